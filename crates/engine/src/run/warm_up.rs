@@ -18,6 +18,40 @@ use crate::weather::conditions::Weather;
 /// Least change of a temperature between two repetitions that is asked for [K]: in single precision, smaller ones are rounding.
 const LEAST: ByPrecision = ByPrecision { double: 0.0, single: 2e-3 };
 
+/// Two states are the same where no number differs by more than a part of itself and a sum, for each kelvin of the tolerance of the warm-up:
+/// of temperatures, by a few thousandths of the tolerance at most.
+const SAME: [f64; 2] = [1e-5, 1e-4];
+
+/// A state that was reached before, to see where the repetitions go round in a circle: a control that switches may come back to where
+/// it was after some periods, and never to the start of one. The state is replaced after 1, 2, 4, ... repetitions, so that a circle of any
+/// length is seen (Brent 1980, doi:10.1007/BF01933190).
+struct Circle<S: Real> {
+    tolerance: f64,
+    before: State<S>,
+    numbers: Vec<S>,
+}
+
+impl<S: Real> Circle<S> {
+    fn new(state: &State<S>, tolerance: f64) -> Self {
+        Self { tolerance, before: state.clone(), numbers: Vec::new() }
+    }
+
+    /// The lanes in which the state after a repetition, counted from 1, is one that was reached before.
+    fn comes_back(&mut self, state: &State<S>, cycle: usize) -> S::Mask {
+        let mut same = S::Mask::splat(true);
+        self.numbers.clear();
+        self.before.write(&mut self.numbers);
+        state.zip_with(&self.numbers, |now, before| {
+            let [part, sum] = SAME.map(|same| same * self.tolerance);
+            same = same & (now - before).abs().lt(before.abs().scale(part) + S::constant(sum));
+        });
+        if cycle.is_power_of_two() {
+            self.before.copy_from(state);
+        }
+        same
+    }
+}
+
 /// Repeats the first period until every lane has converged. Gives the number of repetitions
 /// and the largest change in the last one [K].
 pub(super) fn warm_up<'a, S: Real>(
@@ -35,6 +69,9 @@ pub(super) fn warm_up<'a, S: Real>(
     let mut known: Option<PeriodicStart<S>> = None;
     // What the guesses of the lanes that have converged are made from, as their last repetition left it.
     let mut history: Option<History<S>> = None;
+    // Lanes that will never converge.
+    let (mut circle, mut circling) = (Circle::new(state, tolerance), S::Mask::splat(false));
+    let mut cycles = warmup.max_cycles;
     for cycle in 1..=warmup.max_cycles {
         let mut next = state.clone();
         let mut unused = EnergyBalance::new();
@@ -55,8 +92,14 @@ pub(super) fn warm_up<'a, S: Real>(
                 None => history = Some(now),
             }
         }
+        circling = circling | (active & circle.comes_back(&next, cycle));
+        active = active & !circling;
         if !active.any() {
             state.take(reached, &next);
+            if circling.any() {
+                cycles = cycle;
+                break;
+            }
             restore(stepper, history.as_ref());
             return Ok((cycle, change_left));
         }
@@ -70,19 +113,61 @@ pub(super) fn warm_up<'a, S: Real>(
         state.take(active, &start);
         stepper.guess.move_by(&next, state);
     }
+    active = active | circling;
     // Lanes that have converged do not depend on the others: these are run again alone.
     if S::LANES > 1 && (!(active | stepper.failed())).any() {
         stepper.mark_failed(active);
         restore(stepper, history.as_ref());
-        return Ok((warmup.max_cycles, change_left));
+        return Ok((cycles, change_left));
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
-    Err(EngineError::WarmUpNotConverged { cycles: warmup.max_cycles, residual, tolerance })
+    Err(EngineError::WarmUpNotConverged { cycles, residual, tolerance })
 }
 
 /// Sets what guesses are made from.
 fn restore<S: Real>(stepper: &mut Stepper<'_, S>, history: Option<&History<S>>) {
     if let Some(history) = history {
         stepper.set_history(history);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(temperature: f64) -> State<f64> {
+        State {
+            cells: vec![temperature; 3],
+            enthalpy: Vec::new(),
+            memory: Vec::new(),
+            surfaces: vec![temperature; 2].into(),
+            air: vec![temperature],
+            load: Vec::new(),
+            vapour: Vec::new(),
+            opened: Vec::new(),
+            unchanged: Vec::new(),
+        }
+    }
+
+    /// After how many repetitions a sequence of temperatures comes back.
+    fn circle(tolerance: f64, temperature: impl Fn(i32) -> f64) -> Option<usize> {
+        let mut circle = Circle::new(&state(temperature(0)), tolerance);
+        (1..=1000).find(|&cycle| circle.comes_back(&state(temperature(cycle as i32)), cycle))
+    }
+
+    /// A circle of seven repetitions after a transient: it is seen as soon as a state of it is remembered for seven. What converges, from one
+    /// side or in decaying circles, is none, however small the tolerance is.
+    #[test]
+    fn a_circle_is_seen_and_a_slow_decay_is_none() {
+        let turning = |cycle: i32| f64::from(cycle % 7) + 5.0 * 0.5_f64.powi(cycle);
+        assert_eq!(circle(0.01, turning), Some(32 + 7));
+        for tolerance in [1e-2, 1e-9] {
+            // Until the change between two repetitions is below the tolerance.
+            let change = |decay: f64| (tolerance / (1.0 - decay)).ln() / decay.ln();
+            let seen = circle(tolerance, |cycle| 20.0 + 0.98_f64.powi(cycle));
+            assert!(seen.is_none_or(|cycle| cycle as f64 > change(0.98)), "{tolerance}: {seen:?}");
+            let swinging = circle(tolerance, |cycle| 20.0 + (-0.9_f64).powi(cycle));
+            assert!(swinging.is_none_or(|cycle| cycle as f64 > change(0.9)), "{tolerance}: {swinging:?}");
+        }
     }
 }
