@@ -49,15 +49,15 @@ class _Compiled(BytecodeCache):
     """Compiled templates of this process: each page has an environment of its own."""
 
     def __init__(self) -> None:
-        self._kept: dict[tuple[str, str], bytes] = {}
+        self._codes: dict[tuple[str, str], bytes] = {}
 
     def load_bytecode(self, bucket: Bucket) -> None:
-        kept = self._kept.get((bucket.key, bucket.checksum))
-        if kept is not None:
-            bucket.bytecode_from_string(kept)
+        bytecode = self._codes.get((bucket.key, bucket.checksum))
+        if bytecode is not None:
+            bucket.bytecode_from_string(bytecode)
 
     def dump_bytecode(self, bucket: Bucket) -> None:
-        self._kept[bucket.key, bucket.checksum] = bucket.bytecode_to_string()
+        self._codes[bucket.key, bucket.checksum] = bucket.bytecode_to_string()
 
 
 _COMPILED: Final = _Compiled()

@@ -45,10 +45,12 @@ def said_once(
     grid = record.grid
     digest = hashlib.sha256(b"".join(column.tobytes() for column in columns)).hexdigest()
     of_record = (record.file, grid.start, grid.interval, zone_name(grid.zone))
-    whole = (digest, *map(repr, key), *of_record)
-    if whole not in _SAID:
+    identity = (digest, *map(repr, key), *of_record)
+    said = _SAID.get(identity)
+    if said is None:
         entry = cached((digest, *key, *of_record), code, lambda: Cached({"said": [*check()]}))
+        said = tuple(entry.notes["said"])
         if len(_SAID) >= _MOST:
-            del _SAID[next(iter(_SAID))]
-        _SAID[whole] = tuple(entry.notes["said"])
-    return _SAID[whole]
+            _SAID.pop(next(iter(_SAID)), None)
+        _SAID[identity] = said
+    return said
