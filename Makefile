@@ -34,6 +34,8 @@ RUST_SOURCES := Cargo.toml Cargo.lock $(wildcard rust-toolchain.toml) \
 WEB_SOURCES := Cargo.toml Cargo.lock \
 	$(shell find crates/contents crates/engine/src crates/web -name '*.rs' -o -name Cargo.toml)
 
+# Where it is set, each process compiles all packages anew.
+unexport PYTHONDONTWRITEBYTECODE
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export PIP_NO_INPUT := 1
 # The same interpreter for every cargo call, so that the binding is not rebuilt between them.

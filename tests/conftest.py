@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gc
 import os
 import random
 import shutil
@@ -19,6 +20,16 @@ ROOT = Path(__file__).resolve().parent.parent
 os.environ["MPLBACKEND"] = "Agg"  # no window opens in a test
 os.environ["MASCARIN_CACHE"] = "off"  # weather files are read, not what an earlier test kept of them
 
+# Where this is set, each process of a test compiles the package anew, and pytest rewrites all asserts.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+
+# What a test writes need not outlast a failure of the power.
+os.fsync = lambda fd: None
+
+# What is collected stays: looking for garbage among it takes a quarter of the time of the collection.
+gc.disable()
+
 
 SEED = "MASCARIN_TEST_SEED"
 
@@ -35,10 +46,11 @@ def pytest_report_header() -> str:
     return f"seed of random examples: {os.environ[SEED]} (repeat with {SEED}={os.environ[SEED]})"
 
 
-#: Files that take a minute or more: they begin first, so that no process waits for one of them at the end.
+#: Files that take long: they begin first, so that no process waits for one of them at the end.
 LONG = (
-    "test_docs_engine.py", "test_calibration_coverage.py", "test_fuzz.py", "test_study.py",
-    "test_study_resume.py", "test_notebooks.py",
+    "test_docs_engine.py", "test_crossing.py", "test_study.py", "test_report.py", "test_fuzz.py",
+    "test_calibration_coverage.py", "test_docs.py", "test_calibration_sampled.py", "test_notebooks.py",
+    "test_odd_inputs.py", "test_energyplus_small.py",
 )  # fmt: skip
 
 
@@ -46,6 +58,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Long files first; with ``--dist=loadfile --no-loadscope-reorder`` files are given out in this order."""
     rank = {name: number for number, name in enumerate(LONG)}
     items.sort(key=lambda item: rank.get(item.path.name, len(LONG)))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop() -> None:
+    """Look for garbage again, but not among what was collected, and less often than in a small program."""
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
+    gc.enable()
 
 
 DATA = "MASCARIN_DATA"
@@ -88,6 +108,23 @@ def wasm() -> Path:
     if not file.is_file():
         unavailable("no engine for browsers: rustup target add wasm32-unknown-unknown, make build", WASM)
     return file
+
+
+#: Files that read the same weather and tables many times, and judge what comes after.
+AFTER_READING = (
+    "test_crossing.py", "test_design.py", "test_docs.py", "test_odd_inputs.py", "test_study.py",
+    "test_study_carried.py", "test_study_experiments.py", "test_study_forms_used.py",
+    "test_study_objects.py", "test_templates.py",
+)  # fmt: skip
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _kept_weather(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What reading and checking a file gave is kept, as for a user, in a folder of this process."""
+    with pytest.MonkeyPatch.context() as patch:
+        if request.path.name in AFTER_READING:
+            patch.setenv("MASCARIN_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
+        yield
 
 
 @pytest.fixture(autouse=True, scope="session")

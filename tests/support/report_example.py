@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -243,6 +244,13 @@ def _building(building: Building) -> dict[str, Any]:
 
 
 def _lgi_series() -> Series:
+    """The series of the cell: each call has its own columns of the same values."""
+    columns = {name: Column(c.values.copy(), c.label, c.unit) for name, c in _lgi_columns().items()}
+    return Series("2010-08-01T00:00", 900.0, columns)
+
+
+@cache
+def _lgi_columns() -> dict[str, Column]:
     with (LGI / "lgi_virtual.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     table = {key: np.array([float(row[key]) for row in rows]) for key in rows[0] if key != "time"}
@@ -265,7 +273,7 @@ def _lgi_series() -> Series:
     columns["weather/global"] = Column(table["global_horizontal"], "Global radiation", "W/m²")
     columns["weather/wind"] = Column(table["wind_speed"], "Wind", "m/s")
     columns["state/ceiling.energain_liquid_fraction"] = Column(fraction, "Liquid fraction of the ceiling", "")
-    return Series("2010-08-01T00:00", 900.0, columns)
+    return columns
 
 
 def _red(rng: np.random.Generator, n: int, keep: float) -> Array:

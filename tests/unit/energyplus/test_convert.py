@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import math
-import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -449,33 +448,34 @@ def test_a_zone_that_is_not_convex(tmp_path: Path) -> None:
 # --- the command --------------------------------------------------------------------------------------------
 
 
-def run(tmp_path: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "mascarin.cli", *words]
-    return subprocess.run(
-        command, cwd=tmp_path, capture_output=True, text=True, check=False, env=dict(os.environ)
-    )
+def run(folder: Path, *words: str) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error of a command in this process."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.chdir(folder), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = main([*words])
+    return code, out.getvalue(), err.getvalue()
 
 
 def test_the_command_writes_a_file_that_is_read_again(tmp_path: Path) -> None:
     (tmp_path / "box.idf").write_text(box(), encoding="utf-8")
-    done = run(tmp_path, "convert", "box.idf", "-o", "out.yaml")
-    assert done.returncode == 0, done.stderr
+    code, _, said = run(tmp_path, "convert", "box.idf", "-o", "out.yaml")
+    assert code == 0, said
     assert mc.load(tmp_path / "out.yaml") == convert(tmp_path / "box.idf").building
-    assert run(tmp_path, "check", "out.yaml").returncode == 0
+    assert run(tmp_path, "check", "out.yaml")[0] == 0
 
 
 def test_the_exit_code_says_that_something_was_left_out(tmp_path: Path) -> None:
     text = box("ZoneEarthtube,Room,,0.1,10,20,1,Natural,0,1,0.15,0.002,20,1,3;")
     (tmp_path / "box.idf").write_text(text, encoding="utf-8")
-    done = run(tmp_path, "convert", "box.idf", "--json")
-    told = json.loads(done.stdout)
-    assert done.returncode == 1
+    code, printed, _ = run(tmp_path, "convert", "box.idf", "--json")
+    told = json.loads(printed)
+    assert code == 1
     assert told["complete"] is False
     assert any(one["level"] == "left out" and one["class"] == "ZoneEarthtube" for one in told["findings"])
     assert told["names"]["zones"] == {"Room": "Room"}
     assert "ZoneEarthtube" in (tmp_path / "box.yaml").read_text(encoding="utf-8")
     (tmp_path / "bad.idf").write_text("Zone,Room;", encoding="utf-8")
-    assert run(tmp_path, "convert", "bad.idf").returncode == 2
+    assert run(tmp_path, "convert", "bad.idf")[0] == 2
 
 
 def test_minimal_shadowing_has_no_shadows_between_surfaces(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from mascarin._io.sealed.cache import FOLDER, MOST, Cached, cache_folder, cached
 from mascarin.errors import InputError
 from mascarin.tables.reading import table
 from mascarin.weather import Climate, Measurements
-from mascarin.weather.checks import sun_check
+from mascarin.weather.checks import once, sun_check
 from mascarin.weather.reading import readers, shipped
 
 PLACE = (39.74, -105.18)
@@ -21,7 +21,8 @@ PLACE = (39.74, -105.18)
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty cache."""
+    """An empty cache, and a process that has checked nothing."""
+    monkeypatch.setattr(once, "_SAID", {})
     monkeypatch.delenv("MASCARIN_CACHE")
     for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(name, str(tmp_path))
@@ -43,6 +44,7 @@ def test_a_file_is_read_once_and_gives_the_same(folder: Path, monkeypatch: pytes
     assert len(list(folder.iterdir())) == 3  # the year, that its clock is right, what is too bright
     monkeypatch.setattr(readers, "content", None)
     monkeypatch.setattr(sun_check, "SunPath", None)
+    monkeypatch.setattr(once, "_SAID", {})  # as in another process
     again = Climate.shipped("golden")
     again.completed()
     assert same(first, again)
@@ -99,6 +101,21 @@ def test_the_oldest_are_removed(folder: Path) -> None:
 def test_it_can_be_turned_off(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MASCARIN_CACHE", "off")
     Climate.shipped("golden").completed()
+    assert not folder.exists()
+    # In one process a record is checked once all the same; another place is another check.
+    monkeypatch.setattr(sun_check, "SunPath", None)
+    again = Climate.shipped("golden")
+    again.completed()
+    with pytest.raises(AttributeError, match="over"):
+        sun_check.check_clock(again.record, PLACE[0] + 0.5, PLACE[1])
+
+
+def test_its_folder_can_be_named(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MASCARIN_CACHE", str(tmp_path / "mine"))
+    first = Climate.shipped("golden")
+    assert len(list((tmp_path / "mine" / FOLDER).iterdir())) == 1
+    monkeypatch.setattr(readers, "content", None)
+    assert same(first, Climate.shipped("golden"))
     assert not folder.exists()
 
 

@@ -3,7 +3,7 @@
 A file of the cache is named by a hash of everything that its content depends on: the weather file, the
 version of Mascarin, and the code that made it. It is an own file (`_io.own_files`): one that is cut, damaged
 or of another program is read as if it were not there, and written again. The folder may be deleted at any
-time. With ``MASCARIN_CACHE=off`` nothing is read from it or written to it.
+time. With ``MASCARIN_CACHE=off`` nothing is read from it or written to it; any other value is its folder.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Array: TypeAlias = npt.NDArray[np.floating[Any]]
 
 FOLDER: Final = "weather"
 VARIABLE: Final = "MASCARIN_CACHE"
-"""Environment variable that turns the cache off."""
+"""Environment variable that turns the cache off, or names its folder."""
 #: Files that are kept; the oldest ones are removed. A year of weather has 0.7 MB.
 MOST: Final = 64
 #: Numbers of a file; larger tables are read anew each time.
@@ -53,7 +53,10 @@ class Cached:
 
 
 def cache_folder() -> Path:
-    """Cache folder of the user: where the platform puts files that can be downloaded again."""
+    """Cache folder of the user: the one of the variable, or where the platform puts such files."""
+    named = os.environ.get(VARIABLE, "")
+    if named and named.lower() != "off":
+        return Path(named)
     import platformdirs
 
     return Path(platformdirs.user_cache_dir("mascarin"))

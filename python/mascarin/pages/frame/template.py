@@ -14,7 +14,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Final, NamedTuple
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import BytecodeCache, Environment, PackageLoader, StrictUndefined
+from jinja2.bccache import Bucket
 from markupsafe import Markup
 
 from mascarin._io.terminal import printable
@@ -44,6 +45,24 @@ CURVES: Final = Library(
 )
 
 
+class _Compiled(BytecodeCache):
+    """Compiled templates of this process: each page has an environment of its own."""
+
+    def __init__(self) -> None:
+        self._codes: dict[tuple[str, str], bytes] = {}
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        bytecode = self._codes.get((bucket.key, bucket.checksum))
+        if bytecode is not None:
+            bucket.bytecode_from_string(bytecode)
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        self._codes[bucket.key, bucket.checksum] = bucket.bytecode_to_string()
+
+
+_COMPILED: Final = _Compiled()
+
+
 def environment(references: CrossReferences | None = None) -> Environment:
     """Templates of all packages, by their path below ``mascarin``; they extend ``pages/frame/base.html``.
 
@@ -65,6 +84,7 @@ def environment(references: CrossReferences | None = None) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        bytecode_cache=_COMPILED,
     )
     templates.filters |= {"typeset": typeset, "significant": significant, "symbol": _symbol}
     templates.globals["references"] = references or CrossReferences()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
     from mascarin.simulation.results import Results
     from mascarin.weather import Climate, Measurements
 
+#: The text of the engine, which takes as long as a run of a month.
+_engine_text: Final = lru_cache(maxsize=1)(text_of)
 #: Points of a curve; of longer runs every k-th step is drawn.
 _MAX_POINTS: Final = 3000
 
@@ -198,7 +201,7 @@ class _Page:
                 same=self._has_the_mesh_of_a_run(),
                 inputs=self._inputs(),
                 worker=Markup(asset("pages/live/worker.js")),  # noqa: S704  (our own file)
-                engine=text_of(module),
+                engine=_engine_text(module),
                 contents=text_of(b"".join(files)),
             )
         )

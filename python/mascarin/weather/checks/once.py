@@ -1,15 +1,23 @@
-"""What a check of a record says, kept in the cache of the user: a check may take as long as a run."""
+"""What a check of a record says, kept in this process and in the cache of the user.
+
+A check may take as long as a run, and each run of a building in the same weather asks for it.
+"""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterable, Sequence
 from types import ModuleType
+from typing import Final
 
 from mascarin._io.sealed.cache import Cached, cached
 from mascarin.tables.arrays import Array
 from mascarin.tables.timezones import zone_name
 from mascarin.weather.records.record import WeatherRecord
+
+#: Sentences by key, for this process; the oldest ones are forgotten.
+_SAID: Final[dict[tuple[object, ...], tuple[str, ...]]] = {}
+_MOST: Final = 1024
 
 
 def said_once(
@@ -37,5 +45,12 @@ def said_once(
     grid = record.grid
     digest = hashlib.sha256(b"".join(column.tobytes() for column in columns)).hexdigest()
     of_record = (record.file, grid.start, grid.interval, zone_name(grid.zone))
-    entry = cached((digest, *key, *of_record), code, lambda: Cached({"said": [*check()]}))
-    return tuple(entry.notes["said"])
+    identity = (digest, *map(repr, key), *of_record)
+    said = _SAID.get(identity)
+    if said is None:
+        entry = cached((digest, *key, *of_record), code, lambda: Cached({"said": [*check()]}))
+        said = tuple(entry.notes["said"])
+        if len(_SAID) >= _MOST:
+            _SAID.pop(next(iter(_SAID)), None)
+        _SAID[identity] = said
+    return said

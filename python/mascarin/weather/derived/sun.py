@@ -17,7 +17,7 @@ import importlib.machinery
 import importlib.util
 import sys
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from types import ModuleType
 from typing import Final
 
@@ -71,18 +71,9 @@ class SunPath:
         origin : float
             Time from which the times of the other methods count, seconds since 1970-01-01 UTC [s].
         """
-        spa = _algorithm()
         first = (np.floor(start / _NODE_STEP) - 2.0) * _NODE_STEP
         count = int(np.ceil((end - first) / _NODE_STEP)) + 4
-        seconds = first + _NODE_STEP * np.arange(count)
-        # At sea level; pressure and temperature only change the refraction, which is not used.
-        _, zenith, _, _, azimuth, _ = spa.solar_position(
-            seconds, latitude, longitude, 0.0, STANDARD_PRESSURE / 100.0, 12.0, _DELTA_T, 0.5667, 1
-        )
-        distance = spa.earthsun_distance(seconds, _DELTA_T, 1)
-        vector = _direction(np.radians(zenith), np.radians(azimuth))
-        slow = _turn(_to_pole(vector, np.radians(latitude)), _TURN * (seconds - first))
-        return cls(latitude, first - origin, slow, SOLAR_CONSTANT / distance**2)
+        return cls(latitude, first - origin, *_nodes(latitude, longitude, float(first), count))
 
     def vector(self, time: Array) -> Array:
         """Unit vector to the centre of the sun, without refraction.
@@ -117,6 +108,24 @@ class SunPath:
         """
         position = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
         return _cubic(self.extra[:, None], position)[..., 0]
+
+
+@lru_cache(maxsize=16)
+def _nodes(latitude: float, longitude: float, first: float, count: int) -> tuple[Array, Array]:
+    """`SunPath.slow` and `SunPath.extra`. Checks, runs and reports of one building ask for the same hours."""
+    spa = _algorithm()
+    seconds = first + _NODE_STEP * np.arange(count)
+    # At sea level; pressure and temperature only change the refraction, which is not used.
+    _, zenith, _, _, azimuth, _ = spa.solar_position(
+        seconds, latitude, longitude, 0.0, STANDARD_PRESSURE / 100.0, 12.0, _DELTA_T, 0.5667, 1
+    )
+    distance = spa.earthsun_distance(seconds, _DELTA_T, 1)
+    vector = _direction(np.radians(zenith), np.radians(azimuth))
+    slow = _turn(_to_pole(vector, np.radians(latitude)), _TURN * (seconds - first))
+    extra = SOLAR_CONSTANT / distance**2
+    for shared in (slow, extra):
+        shared.flags.writeable = False
+    return slow, extra
 
 
 @cache
