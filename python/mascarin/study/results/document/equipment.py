@@ -46,7 +46,7 @@ def equipment(building: Building) -> list[list[str]]:
     >>> from mascarin import load
     >>> from mascarin.examples import FOLDER
     >>> name, words = equipment(load(FOLDER / "reunion_house" / "building.yaml"))[0]
-    >>> f"{name}: {words}"[:68]
+    >>> f"{name}: {words}"[:67]
     'window jalousie_living_north: 3.6 m2 in living_north, glazing clear'
     """
     parts = (_named, _of_zones, _of_surfaces, _of_materials, _of_building)
