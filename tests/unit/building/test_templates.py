@@ -371,3 +371,33 @@ def test_a_date_without_a_year_is_the_first_one_of_the_climate() -> None:
     assert short.index.equals(long.index)
     over = mc.simulate(building, climate, start="12-31", end="01-02")
     assert (over.index[-1] - over.index[0]) == pd.Timedelta(days=2)
+
+
+def test_the_place_of_a_wall_has_no_effect(tmp_path: Path) -> None:
+    """As its description says: temperatures and irradiance are measured."""
+    from mascarin.templates.wall import Wall
+
+    hours = np.arange(48)
+    index = pd.date_range("2024-05-01", periods=48, freq="1h", tz="UTC")
+    columns = {
+        "T_out": 18.0 + 6.0 * np.sin(hours / 4.0),
+        "T_in": 22.0 + np.cos(hours / 5.0),
+        "G": np.maximum(500.0 * np.sin((hours % 24 - 6.0) * np.pi / 12.0), 0.0),
+    }
+    frame = pd.DataFrame(columns, index=index)
+    absent = ["wind_speed", "wind_direction", "dew_point", "radiation"]
+    climate = mc.Climate.from_table(frame, columns={"air_temperature": "T_out"}, absent=absent)
+    for irradiance in ("G", ""):
+        wall = Wall("brick 12cm + polystyrene 6cm", "T_in", "T_out", irradiance=irradiance).building()
+        places = ({}, {"site.latitude": 60.0, "site.longitude": 10.0, "site.altitude": 400.0})
+        here, far = (
+            mc.simulate(
+                wall.replace(place),
+                climate,
+                measurements=mc.Measurements.from_table(frame),
+                outputs=["wall.inside_temperature"],
+                step="1h",
+            ).records
+            for place in places
+        )
+        assert np.array_equal(here, far)
