@@ -51,7 +51,7 @@ def setup(*stretches: Stretch, masked: bool = False) -> Any:
 # --- causes -------------------------------------------------------------------------------------------------
 
 #: Group, kind, subject, detail and unit of a candidate of each kind.
-KINDS: Final[list[tuple[str, str, tuple[str, ...], str, str]]] = [
+KINDS: Final[list[tuple[Any, Any, tuple[str, ...], str, str]]] = [
     ("data", "swapped", ("air", "wall"), "", ""),
     ("data", "swap_step", ("air", "wall"), "", ""),
     *(("data", what, ("air",), "", "K") for what in ("offset", "step", "drift")),
@@ -72,7 +72,7 @@ SHOWN_ELSEWHERE: Final = {
 }
 
 
-def finding(kind: tuple[str, str, tuple[str, ...], str, str], **facts: Any) -> CauseEstimate:
+def finding(kind: tuple[Any, Any, tuple[str, ...], str, str], **facts: Any) -> CauseEstimate:
     group, what, subject, detail, unit = kind
     start = 50.0 if what.endswith("step") else math.nan
     candidate = Candidate(
@@ -82,7 +82,7 @@ def finding(kind: tuple[str, str, tuple[str, ...], str, str], **facts: Any) -> C
         np.zeros((1, 1)),
         unit=unit,
         detail=detail,
-        start=start,  # type: ignore[arg-type]
+        start=start,
     )
     stated: dict[str, Any] = {
         "value": 0.6, "error": 0.1, "p": 0.003, "certainty": 0.93, "log_bayes_factor": 12.0, "told": True,
@@ -101,7 +101,7 @@ def test_every_kind_of_cause_is_tried() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: "-".join(kind[:2]))
-def test_each_fact_of_a_cause_changes_its_sentence(kind: tuple[str, str, tuple[str, ...], str, str]) -> None:
+def test_each_fact_of_a_cause_changes_its_sentence(kind: tuple[Any, Any, tuple[str, ...], str, str]) -> None:
     base = said(finding(kind))
     other = finding(("data", "clock", ("wall",), "", "min")).candidate
     changes: dict[str, dict[str, Any]] = {
@@ -131,7 +131,7 @@ def test_each_fact_of_a_cause_changes_its_sentence(kind: tuple[str, str, tuple[s
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: "-".join(kind[:2]))
 def test_no_sentence_about_a_cause_states_what_the_facts_do_not(
-    kind: tuple[str, str, tuple[str, ...], str, str],
+    kind: tuple[Any, Any, tuple[str, ...], str, str],
 ) -> None:
     """High and low, early and late, up and down, missing and too much: one of the two, by the sign."""
     pairs = (("too high", "too low"), (" late", " early"), (" up ", " down "), ("missing", "too much"))
@@ -146,10 +146,11 @@ def test_no_sentence_about_a_cause_states_what_the_facts_do_not(
 def test_each_fact_of_a_stretch_changes_its_sentence(kind: Any) -> None:
     stretch = Stretch("T_air", kind, TIMES[3], TIMES[9], 7, "20.4")
     (base,) = words.of_table(setup(stretch))
-    for key, value in {
+    changes: dict[str, Any] = {
         "channel": "T_wall", "kind": "stuck" if kind == "copied" else "copied", "start": TIMES[4],
         "end": TIMES[12], "count": 11, "detail": "21.9",
-    }.items():  # fmt: skip
+    }  # fmt: skip
+    for key, value in changes.items():
         (other,) = words.of_table(setup(replace(stretch, **{key: value})))
         assert other.text != base.text, key
     assert {field.name for field in fields(Stretch)} == {"channel", "kind", "start", "end", "count", "detail"}
@@ -211,6 +212,9 @@ def test_each_fact_of_the_choice_of_days_changes_its_words() -> None:
     base = "\n".join(day_words(choice()))
     assert "1 of 2 days that were not used for the calibration is an extrapolation: its leverage" in base
     assert "2024-05-04" in base
+    further: dict[str, Any] = {
+        "name": "sun", "low": 1.0, "high": 5.0, "other_low": 0.1, "other_high": 8.0, "outside": 0.5,
+    }  # fmt: skip
     changes: dict[str, dict[str, Any]] = {
         "nothing proposed": {"proposed": ()},
         "another day": {"proposed": (2,)},
@@ -221,9 +225,7 @@ def test_each_fact_of_the_choice_of_days_changes_its_words() -> None:
         "dates": {"days": ("2025-05-01", "2025-05-02", "2025-05-03", "2025-05-04")},
         **{
             key: {"ranges": (replace(choice().ranges[0], **{key: value}),)}
-            for key, value in {
-                "name": "sun", "low": 1.0, "high": 5.0, "other_low": 0.1, "other_high": 8.0, "outside": 0.5,
-            }.items()
+            for key, value in further.items()
         },
     }  # fmt: skip
     told = {name: "\n".join(day_words(choice(**facts))) for name, facts in changes.items()}

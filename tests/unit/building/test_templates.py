@@ -389,7 +389,10 @@ def test_the_place_of_a_wall_has_no_effect(tmp_path: Path) -> None:
     climate = mc.Climate.from_table(frame, columns={"air_temperature": "T_out"}, absent=absent)
     for irradiance in ("G", ""):
         wall = Wall("brick 12cm + polystyrene 6cm", "T_in", "T_out", irradiance=irradiance).building()
-        places = ({}, {"site.latitude": 60.0, "site.longitude": 10.0, "site.altitude": 400.0})
+        places: tuple[dict[str, float], ...] = (
+            {},
+            {"site.latitude": 60.0, "site.longitude": 10.0, "site.altitude": 400.0},
+        )
         here, far = (
             mc.simulate(
                 wall.replace(place),

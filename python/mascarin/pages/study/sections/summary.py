@@ -112,7 +112,8 @@ def _trust_words(study: StudyDocument) -> str:
         )
     if contradictions:
         points = "one point" if contradictions == 1 else f"{contradictions} points"
-        parts.append(f"the model contradicts its data or what is known in {points} (see the head of this page)")
+        head = "see the head of this page"
+        parts.append(f"the model contradicts its data or what is known in {points} ({head})")
     elif study.parameters:
         parts.append("no contradiction with the data of its identification was seen")
     if not parts:
