@@ -95,8 +95,8 @@ def _scatter_words(study: StudyDocument) -> str:
     words = " and ".join(
         f"{text.span(values)}\u00a0{unit}".strip("\u00a0") for unit, values in by_unit.items()
     )
-    several = ", depending on the sensor" if any(len(values) > 1 for values in by_unit.values()) else ""
-    return f"; its error has a standard deviation of {words}{several} ({period_label(study, period).lower()})"
+    varying = ", depending on the sensor" if any(len(values) > 1 for values in by_unit.values()) else ""
+    return f"; its error has a standard deviation of {words}{varying} ({period_label(study, period).lower()})"
 
 
 def _trust_words(study: StudyDocument) -> str:
