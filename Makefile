@@ -7,6 +7,7 @@
 #   make fuzz   build, run the long campaign of random and mutated inputs; FUZZ="--inputs 100000" for more of them
 #   make docs   build, make the documentation site without a network: target/site/html; warnings are errors
 #   make lock   write constraints.lock anew after a change of constraints.txt
+#   make docs-axe   check every page of the built site with axe, in Chromium
 #   make docs-links   ask the other sites that the pages link to
 #   make bench  build, measure, and write the tables of docs/speed.md; make bench ENERGYPLUS=path with its peer
 #   make track  count the instructions of the engine and append them to bench/tracked.csv; TRACK="--times" with times
@@ -44,7 +45,7 @@ export PYO3_PYTHON := $(CURDIR)/$(PY)
 FUZZ_CALLS ?= 20000
 THREE := python/mascarin/pages/view/vendor
 
-.PHONY: help demo first-engine test coverage test-lowest bench track fuzz docs docs-links lock vendor-three build check-tools check-rust check-python pytest
+.PHONY: help demo first-engine test coverage test-lowest bench track fuzz docs docs-axe docs-links lock vendor-three build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:
 
 help:
@@ -81,6 +82,9 @@ test-lowest: $(BUILT)
 docs: $(BUILT)
 	$(PY) docs/site/build.py target/site
 	@echo "target/site/html/index.html"
+
+docs-axe:
+	$(PY) docs/site/axe.py target/site/html
 
 docs-links: $(BUILT)
 	$(PY) docs/site/build.py target/site --links

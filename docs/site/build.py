@@ -43,6 +43,7 @@ def main() -> int:
     code = int(build_main([*words, "-d", str(out / "doctrees"), str(out / "source"), str(out / builder)]))
     if not options.links:
         accessible.name_toggles(out / builder)
+        accessible.fill_corners(out / builder)
     return code
 
 

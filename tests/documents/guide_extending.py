@@ -32,7 +32,7 @@ def metric_is_used() -> None:
     assert "median_error" in repr(found)
     criteria = parse_criteria([{"metric": "median_error", "limit": 0.2}])
     (verdict,) = judge(criteria, {"room": {"blind": found}})
-    assert (verdict.name, verdict.unit, verdict.passed) == ("median error <= 0.2 degC", "degC", False)
+    assert (verdict.name, verdict.unit, verdict.passed) == ("median error <= 0.2 K", "degC", False)
     with pytest.raises(InputError, match="median_error"):
         parse_criteria([{"metric": "median_eror", "limit": 1}])
     assert "median_error" in str(study_schema())

@@ -54,6 +54,14 @@ def test_arrows_of_the_contents_have_names(tmp_path: Path) -> None:
     assert accessible.name_toggles(tmp_path) == 0
 
 
+def test_corners_of_tables_of_notebooks_are_no_heads(tmp_path: Path) -> None:
+    page = tmp_path / "a.html"
+    page.write_text("<table><tr><th></th><th>a</th></tr></table>", "utf-8")
+    assert accessible.fill_corners(tmp_path) == 1
+    assert page.read_text(encoding="utf-8") == "<table><tr><td></td><th>a</th></tr></table>"
+    assert accessible.fill_corners(tmp_path) == 0
+
+
 @pytest.mark.browser
 def test_examples_run_in_the_page_when_they_are_opened(page: Page, tmp_path: Path, wasm: Path) -> None:
     assert wasm.is_file()

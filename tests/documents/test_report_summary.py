@@ -70,7 +70,7 @@ def test_the_verdict_says_what_bands_hold_and_what_contradicts() -> None:
     assert good.startswith("76\u00a0% of the values of blind days lie in its prediction bands of 95\u00a0%")
     assert "no contradiction" in good
     bad = summary.verdict(complete.model_copy(update={"contradictions": [NOTE, NOTE]}))[-1]
-    assert "contradicts its data or what is known 2 times" in bad
+    assert "contradicts its data or what is known in 2 points" in bad
     assert "no contradiction" not in bad
     assert summary.verdict(study()) == []
 

@@ -1,4 +1,4 @@
-"""Names for controls of the theme that have none, so that screen readers can say what they are."""
+"""Names for controls of the theme that have none, and tables without empty heads, for screen readers."""
 
 from __future__ import annotations
 
@@ -26,4 +26,27 @@ def name_toggles(site: Path) -> int:
     pages = [page for page in site.rglob("*.html") if _TOGGLE in page.read_text(encoding="utf-8")]
     for page in pages:
         page.write_text(page.read_text(encoding="utf-8").replace(_TOGGLE, _NAMED), encoding="utf-8")
+    return len(pages)
+
+
+#: The corner of a table of pandas: a head of nothing.
+_CORNER: Final = "<th></th>"
+
+
+def fill_corners(site: Path) -> int:
+    """Make empty heads of tables in notebooks plain cells.
+
+    Parameters
+    ----------
+    site : Path
+        Folder of the pages.
+
+    Returns
+    -------
+    int
+        In how many pages they were.
+    """
+    pages = [page for page in site.rglob("*.html") if _CORNER in page.read_text(encoding="utf-8")]
+    for page in pages:
+        page.write_text(page.read_text(encoding="utf-8").replace(_CORNER, "<td></td>"), encoding="utf-8")
     return len(pages)

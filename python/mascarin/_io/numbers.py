@@ -128,6 +128,31 @@ def beside_limit(value: float, limit: float, least: int = 2) -> tuple[str, str]:
     return fixed(value, decimals), shown
 
 
+def in_percent(share: float) -> str:
+    """A share in percent that is never rounded to nothing or to all. [%]
+
+    Parameters
+    ----------
+    share : float
+        From 0 to 1. [-]
+
+    Examples
+    --------
+    >>> [in_percent(share) for share in (0.0, 0.004, 0.256, 0.999, 1.0)]
+    ['0 %', '0.4 %', '25.6 %', '99.9 %', '100 %']
+    >>> in_percent(0.000123), in_percent(1.0 - 1e-6)
+    ('0.012 %', '99.9999 %')
+    """
+    percent = 100.0 * share
+    if percent in (0.0, 100.0) or not math.isfinite(percent):
+        return f"{percent:g} %"
+    if 0.1 <= percent <= 99.9:
+        return f"{percent:.3g} %" if percent >= 10.0 else f"{percent:.2g} %"
+    if percent < 0.1:
+        return f"{percent:.2g} %"
+    return f"{100.0 - float(f'{100.0 - percent:.1g}'):.10g} %"
+
+
 def significant(value: float, digits: int = 4) -> str:
     """A number with so many significant digits, without trailing zeros.
 

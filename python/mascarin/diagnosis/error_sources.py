@@ -22,12 +22,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mascarin._io.limits import above, at_most
+from mascarin._io.numbers import beside_limit
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.validation.criteria import Verdict
 
 Floats = NDArray[np.float64]
+
+#: Fewest decimals of standard deviations in sentences.
+_DECIMALS: Final = 3
 Flags = NDArray[np.bool_]
 
 PRIOR: Final = 0.25
@@ -216,7 +220,7 @@ def explain_missed_aims(
     >>> found = ErrorSources(("air",), (0.3,), (), Correction(("a",), (0.1,), (0.05,)))
     >>> missed = Verdict("sd", "air", "blind", "sd", 0.3, 0.1, "degC", passed=False)
     >>> explain_missed_aims([missed], found, "blind")[0][:60]
-    'air: the standard deviation is 0.300 K, the aim is 0.1 K. Wi'
+    'air: the standard deviation is 0.300 K, the aim is 0.100 K. '
     """
     sentences = []
     for aim in aims:
@@ -225,7 +229,8 @@ def explain_missed_aims(
         floor, unit = sources.floor(aim.sensor), aim.unit.replace("degC", "K")
         white = (noise or {}).get(aim.sensor, 0.0)
         if above(white, aim.limit):
-            why = f"the white noise of the sensor, {white:.2g} {unit}, is above the aim: no model reaches it"
+            size, _ = beside_limit(white, aim.limit)
+            why = f"the white noise of the sensor, {size} {unit}, is above the aim: no model reaches it"
         elif at_most(floor, aim.limit):
             why = "the equations are sufficient, but the identification data do not determine these values"
         else:
@@ -233,10 +238,13 @@ def explain_missed_aims(
                 "no parameter values reach the aim: the cause is in the equations, the weather data or the "
                 "sensor"
             )
+        value, limit = beside_limit(aim.value, aim.limit, _DECIMALS)
+        remaining, _ = beside_limit(floor, aim.limit, _DECIMALS)
+        count = len(sources.all_adjusted.paths)
+        adjusted = "the only parameter" if count == 1 else f"all {count} parameters"
         sentences.append(
-            f"{aim.sensor}: the standard deviation is {aim.value:.3f} {unit}, the aim is {aim.limit:g} "
-            f"{unit}. With all {len(sources.all_adjusted.paths)} parameters adjusted to these days "
-            f"{floor:.3f} {unit} would remain: {why}."
+            f"{aim.sensor}: the standard deviation is {value} {unit}, the aim is {limit} {unit}. With "
+            f"{adjusted} adjusted to these days {remaining} {unit} would remain: {why}."
         )
     return sentences
 

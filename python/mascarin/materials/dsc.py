@@ -172,7 +172,8 @@ class DscMaterial:
         from mascarin.figures import melting
 
         figure = melting.draw([curve for n, run in enumerate(self.runs) for curve in _curves(n, run)], ax)
-        melting.draw_analysis((ax or figure.axes)[1], [_analysis(n, run) for n, run in enumerate(self.runs)])
+        below = figure.axes[1] if ax is None else ax[1]  # an array of `subplots` has no truth value
+        melting.draw_analysis(below, [_analysis(n, run) for n, run in enumerate(self.runs)])
         return figure
 
 

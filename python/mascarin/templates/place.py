@@ -36,8 +36,9 @@ class Place:
 
 def _weather(name: str) -> tuple[str, str]:
     """What ``--weather`` takes for a place, and its title."""
-    if name in SHIPPED:
-        return f"shipped:{name}", name
+    plain = re.sub(r"[\s_]+", "-", name.strip().lower())
+    if plain in SHIPPED:
+        return f"shipped:{plain}", plain
     if Path(name).is_file():
         return name, re.sub(r"[^\w .-]", " ", Path(name).stem)
     raise InputError(

@@ -20,6 +20,14 @@ WALLS: Final = {"south": 180.0, "east": 90.0, "north": 0.0, "west": 270.0}
 _PLAIN: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
 _NUMBER: Final = r"(\d+(?:\.\d+)?)"
 _UNITS: Final = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
+#: Units of lengths that are not read, for a remedy. [m]
+_FOREIGN_UNITS: Final = {
+    "in": 0.0254, "inch": 0.0254, "inches": 0.0254, '"': 0.0254, "''": 0.0254, "ft": 0.3048, "foot": 0.3048,
+    "feet": 0.3048, "'": 0.3048,
+}  # fmt: skip
+_FOREIGN: Final = re.compile(
+    rf"(?P<number>\d+(?:\.\d+)?)\s*(?P<unit>{'|'.join(sorted(_FOREIGN_UNITS, key=len)[::-1])})(?![a-z])"
+)
 _LAYER: Final = re.compile(rf"^(?P<name>.+?)(?:\s+{_NUMBER}\s*(?P<unit>[a-zA-Z]+)?)?$")
 #: Limits of lengths of a room [m] and of a layer [m].
 _ROOM: Final = (0.5, 100.0)
@@ -146,7 +154,7 @@ def window_of(text: str) -> WindowText:
     if not colon or wall not in WALLS:
         raise InputError(
             f"--window: found '{text}'; expected a wall and a size, such as south:1.2x1.0, with one of "
-            f"{', '.join(WALLS)}. {did_you_mean(wall, WALLS)}".rstrip()
+            f"{', '.join(WALLS)}. {'' if wall in WALLS else did_you_mean(wall, WALLS)}".rstrip(" ")
         )
     width, height = _lengths(size, 2, "--window", "width x height in m, such as south:1.2x1.0")
     return WindowText(wall, width, height)
@@ -198,6 +206,8 @@ def _layer(text: str, option: str) -> LayerText:
     else:
         name, number, unit = match["name"], match[2], match["unit"]
         entry, product = _material(name)
+        if entry is None and (stem := _stem(text)):
+            raise InputError(_no_thickness(text, stem, option))
         if entry is None:
             names = [*common_materials(), *product]
             raise InputError(
@@ -221,9 +231,7 @@ def _thickness(
             )
         return typical, True
     if unit not in _UNITS:
-        raise InputError(
-            f"{option}: found '{text}'; expected a thickness in {', '.join(_UNITS)}, such as 12.5mm"
-        )
+        raise InputError(_no_thickness(text, _stem(text), option))
     thickness = round(float(number) * _UNITS[unit], 9)
     if not _THICKNESS[0] <= thickness <= _THICKNESS[1]:
         raise InputError(
@@ -233,11 +241,40 @@ def _thickness(
     return thickness, False
 
 
-def _material(name: str) -> tuple[tuple[dict[str, Any], float | None] | None, list[str]]:
-    """Keys and typical thickness of a material, none if there is no such; and the names of all products."""
+def _stem(text: str) -> str:
+    """The material in a layer whose thickness cannot be read; empty where there is none."""
+    words = text.strip().lower().replace("_", " ")
+    names = sorted((*common_materials(), *_products()), key=len, reverse=True)
+    for name in names:
+        beside = re.fullmatch(rf"{re.escape(name)}\s*([^a-z\s].*)|(.*\d.*?)\s*{re.escape(name)}", words)
+        if beside and re.search(r"\d", beside[1] or beside[2]):
+            return _products().get(name, name)
+    return ""
+
+
+def _no_thickness(text: str, stem: str, option: str) -> str:
+    """What is wrong with a thickness, and how to write it."""
+    expected = f"{option}: found '{text}'; expected a thickness in {', '.join(_UNITS)}"
+    beyond = text.lower().replace(stem.lower(), "", 1)
+    foreign = _FOREIGN.search(beyond)
+    if foreign is not None:
+        length = float(foreign["number"]) * _FOREIGN_UNITS[foreign["unit"]]
+        return f"{expected}, such as '{f'{stem} {1e3 * length:.4g}mm'.strip()}'"
+    comma = " Write decimals with a point." if re.search(r"\d,\d", beyond) else ""
+    example = f"'{stem} 12.5mm'" if stem else "12.5mm"
+    return f"{expected}, such as {example}.{comma}"
+
+
+def _products() -> dict[str, str]:
+    """Names of products by their names in lower case."""
     from mascarin.materials.library import products
 
-    names = {product.lower(): product for product in products()}
+    return {product.lower(): product for product in products()}
+
+
+def _material(name: str) -> tuple[tuple[dict[str, Any], float | None] | None, list[str]]:
+    """Keys and typical thickness of a material, none if there is no such; and the names of all products."""
+    names = _products()
     table, common = common_materials(), name.strip().lower().replace("_", " ")
     if common in table:
         row = dict(table[common])

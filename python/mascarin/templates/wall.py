@@ -114,6 +114,7 @@ class Wall:
         yield "# A wall between two measured air temperatures. Layers run from outside to inside."
         yield "# Numbers that are assumed are typical values with a plausible range: replace them by yours."
         yield "name: wall"
+        yield "# Its boundary conditions are measured: latitude, longitude and altitude have no effect."
         yield (
             f"site: {{latitude: {self.latitude:g}, longitude: {self.longitude:g}, "
             f"altitude: {self.altitude:g}, timezone: {quoted(self.timezone)}, sky: offset}}"

@@ -72,7 +72,7 @@ class Criterion(BaseModel):
     Examples
     --------
     >>> Criterion(metric="rmse", limit=0.5, sensors=("room",)).describe("degC")
-    '|rmse| <= 0.5 degC'
+    '|rmse| <= 0.5 K'
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -105,13 +105,15 @@ class Criterion(BaseModel):
         Returns
         -------
         str
-            Its name, or such as ``|max error| <= 2 degC``.
+            Its name, or such as ``|max error| <= 2 K``.
         """
         if self.name is not None:
             return self.name
         metric = TABLE[self.metric]
         suffix = " of the measured range" if metric.over == "range" else ""
-        return f"{metric.words} <= {self.limit:g} {metric_unit(self.metric, unit)}{suffix}"
+        # Errors of temperatures are differences.
+        of_metric = metric_unit(self.metric, unit).replace("degC", "K")
+        return f"{metric.words} <= {self.limit:g} {of_metric}{suffix}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +137,7 @@ class Verdict:
 
     Examples
     --------
-    >>> Verdict("|bias| <= 1 degC", "room", "july", "bias", 0.5, 1.0, "degC", passed=True).to_dict()["value"]
+    >>> Verdict("|bias| <= 1 K", "room", "july", "bias", 0.5, 1.0, "degC", passed=True).to_dict()["value"]
     0.5
     """
 

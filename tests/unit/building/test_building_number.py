@@ -8,8 +8,10 @@ import math
 import pytest
 from pydantic_core import PydanticCustomError
 
+from crossing_features import building as feature
 from mascarin.building import quantities
 from mascarin.building.base.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
+from mascarin.errors import InputError
 
 LENGTH = Quantity("m", "A length", Percent(10, "a ruler"), Limits(above=0, at_most=5))
 
@@ -102,3 +104,28 @@ def test_every_quantity_has_unit_meaning_and_range() -> None:
             assert note.limits.hold(high), name
             assert low < high or isinstance(note.spread, Fixed | OnlyGiven), name
     assert found > 50
+
+
+@pytest.mark.parametrize("value", ["3 m", [1], float("nan"), {"value": "x"}])
+def test_a_message_about_a_number_of_a_formula_has_its_unit(value: object) -> None:
+    described = feature("derived outputs")
+    with pytest.raises(InputError, match=r"expected: a number \[m2\] \(Number 'A' of the formula\)"):
+        described.replace({"derived_outputs.gain.A": value})
+
+
+def test_a_number_of_a_formula_without_a_unit_may_be_given_one() -> None:
+    described = feature("derived outputs")
+    changed = described.replace({"derived_outputs.gain.A": {"value": 13, "range": [12, 14]}})
+    parameter = changed.parameter("derived_outputs.gain.A")
+    assert (parameter.value, parameter.unit, parameter.low, parameter.high) == (13.0, "m2", 12.0, 14.0)
+    with pytest.raises(InputError) as refused:
+        described.replace({"derived_outputs.half": {"formula": "gain/n", "n": "2 m"}})
+    assert "expected: a number (Number 'n' of the formula)" in str(refused.value)
+    assert 'Write {value: 2, unit: "m"}.' in str(refused.value)
+    assert "[-]" not in str(refused.value)
+    remedied = described.replace(
+        {"derived_outputs.half": {"formula": "gain/n", "n": {"value": 2, "unit": "m"}}}
+    )
+    assert remedied.parameter("derived_outputs.half.n").unit == "m"
+    with pytest.raises(InputError, match="value, range, source, assumed, unit, limits"):
+        described.replace({"derived_outputs.half": {"formula": "gain/n", "n": {"value": 2, "units": "m"}}})

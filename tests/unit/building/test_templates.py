@@ -6,6 +6,7 @@ import itertools
 import random
 import shlex
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import pandas as pd
@@ -17,6 +18,7 @@ from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from mascarin.materials.library import products
 from mascarin.templates import Room, building_of
+from mascarin.templates.place import place_of
 from mascarin.templates.short_texts import common_materials, layers_of
 from mascarin.weather.reading.shipped import SHIPPED, content
 
@@ -118,6 +120,13 @@ def test_rooms_of_a_house_share_walls() -> None:
         ("new room 4x3x2.8 --ceiling 'plasterbord 12mm'", "Did you mean 'plasterboard'"),
         ("new room 4x3x2.8 --ceiling 'plasterboard 12'", "expected a thickness in mm, cm, m"),
         ("new room 4x3x2.8 --ceiling 'plasterboard 12m'", "a layer of 12 m"),
+        ("new room 4x3x2.8 --ceiling 'plasterboard 0mm'", "a layer of 0 m; expected 0.1 mm to 2 m"),
+        ("new room 4x3x2.8 --ceiling 'plasterboard -3mm'", "expected a thickness in mm, cm, m"),
+        ("new room 4x3x2.8 --ceiling 'plasterboard 12,5mm'", "Write decimals with a point"),
+        ("new room 4x3x2.8 --ceiling 'plaster board 12mm'", "Did you mean 'plasterboard'"),
+        ("new room 4x0x2.8", "found a width of 0 m; expected 0.5 to 100 m"),
+        ("new room 13ftx10ftx9ft", "expected length x width x height in m"),
+        ("new room 4x3x2.8 --window south", "expected a wall and a size, such as south:1.2x1.0"),
         ("new room 4x3x2.8 --window soth:1x1", "Did you mean 'south'"),
         ("new room 4x3x2.8 --window south:5x1", "expected at most 3.90 m"),
         ("new room 4x3x2.8 --recipe night-ventilation", "without a window"),
@@ -134,6 +143,48 @@ def test_what_cannot_be_made_is_said(
     assert cli.main(shlex.split(words)) == 2
     assert said in capsys.readouterr().err
     assert not any(tmp_path.iterdir())
+
+
+FEET: Final = {"in": 0.0254, " inch": 0.0254, '"': 0.0254, "''": 0.0254, "ft": 0.3048, " feet": 0.3048}
+
+
+def test_lengths_in_feet_and_inches_are_refused_with_what_to_write() -> None:
+    rng = random.Random(4)
+    for name in (*common_materials(), *products()):
+        unit = rng.choice([*FEET])
+        number = rng.randint(1, 6) if FEET[unit] < 0.1 else rng.choice([0.25, 0.5, 1])
+        written = f"{rng.choice([name, name.upper(), name.replace(' ', '_')])} {number}{unit}"
+        with pytest.raises(InputError) as refused:
+            layers_of(written, "--walls")
+        said = str(refused.value)
+        assert said.startswith(f"--walls: found '{written}'; expected a thickness in mm, cm, m, such as '")
+        (layer,) = layers_of(said.rsplit("such as '", 1)[1].rstrip("'"), "--walls")
+        assert layer.thickness == pytest.approx(number * FEET[unit], rel=1e-3)
+        (same,) = layers_of(f"{name} 10mm", "--walls")
+        assert layer.material == same.material
+
+
+def test_a_wrong_letter_in_a_material_is_answered_with_the_right_name() -> None:
+    rng = random.Random(5)
+    names = [*common_materials(), *products()]
+    answered = 0
+    tried = [name for name in names if len(name) > 5]
+    for name in tried:
+        k = rng.randrange(1, len(name) - 1)
+        wrong = rng.choice([name[:k] + name[k + 1 :], name[:k] + name[k + 1] + name[k] + name[k + 2 :]])
+        if wrong.lower() in [other.lower() for other in names]:
+            continue
+        with pytest.raises(InputError, match="found no material") as refused:
+            layers_of(f"{wrong} 10mm", "--walls")
+        answered += f"'{name}'" in str(refused.value).rpartition("Did you mean")[2]
+    # Products such as RT21HC and RT22HC differ by a letter: a wrong one may be closer to another.
+    assert answered >= 0.8 * len(tried)
+
+
+def test_places_are_known_however_they_are_written() -> None:
+    for name in SHIPPED:
+        for written in (name.upper(), name.replace("-", " ").title(), f" {name} ", name.replace("-", "_")):
+            assert place_of(written) == place_of(name)
 
 
 def logger(path: Path) -> None:
@@ -321,3 +372,36 @@ def test_a_date_without_a_year_is_the_first_one_of_the_climate() -> None:
     assert short.index.equals(long.index)
     over = mc.simulate(building, climate, start="12-31", end="01-02")
     assert (over.index[-1] - over.index[0]) == pd.Timedelta(days=2)
+
+
+def test_the_place_of_a_wall_has_no_effect(tmp_path: Path) -> None:
+    """As its description says: temperatures and irradiance are measured."""
+    from mascarin.templates.wall import Wall
+
+    hours = np.arange(48)
+    index = pd.date_range("2024-05-01", periods=48, freq="1h", tz="UTC")
+    columns = {
+        "T_out": 18.0 + 6.0 * np.sin(hours / 4.0),
+        "T_in": 22.0 + np.cos(hours / 5.0),
+        "G": np.maximum(500.0 * np.sin((hours % 24 - 6.0) * np.pi / 12.0), 0.0),
+    }
+    frame = pd.DataFrame(columns, index=index)
+    absent = ["wind_speed", "wind_direction", "dew_point", "radiation"]
+    climate = mc.Climate.from_table(frame, columns={"air_temperature": "T_out"}, absent=absent)
+    for irradiance in ("G", ""):
+        wall = Wall("brick 12cm + polystyrene 6cm", "T_in", "T_out", irradiance=irradiance).building()
+        places: tuple[dict[str, float], ...] = (
+            {},
+            {"site.latitude": 60.0, "site.longitude": 10.0, "site.altitude": 400.0},
+        )
+        here, far = (
+            mc.simulate(
+                wall.replace(place),
+                climate,
+                measurements=mc.Measurements.from_table(frame),
+                outputs=["wall.inside_temperature"],
+                step="1h",
+            ).records
+            for place in places
+        )
+        assert np.array_equal(here, far)

@@ -6,6 +6,7 @@ import csv
 from collections import defaultdict
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -286,6 +287,8 @@ def test_report_and_plot(tmp_path: Path) -> None:
     assert measured.get_label() == "heating"
     assert np.asarray(measured.get_ydata())[-1] == pytest.approx(np.trapezoid(heat(t), t) / 1000.0, rel=0.01)
     assert material.plot(ax=[above, below]) is figure
+    array: Any = np.array([above, below])  # as `plt.subplots` gives them
+    assert material.plot(ax=array) is figure
     with pytest.raises(InputError, match="expected one, or one for each unit"):
         material.plot(ax=[above, below, below])
     assert material.to_dict()["runs"]["heating"]["fits"]["tanh"]["law"]["kind"] == "tanh"

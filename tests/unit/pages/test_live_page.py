@@ -319,6 +319,42 @@ def test_tables_follow_and_are_those_of_python(file: Path, simulation: Simulatio
     assert float(fit[2]) == pytest.approx(float(np.sqrt(np.nanmean(errors**2))), abs=0.006)
 
 
+@pytest.mark.browser
+def test_the_sum_of_comfort_counts_the_rooms_that_are_ticked(
+    file: Path, simulation: Simulation, page: Page
+) -> None:
+    opened(page, file)
+    results = simulation.run()
+    zones = told_of(file)["rooms"]
+    assert len(zones) == 2
+    low, high = told_of(file)["band"]
+    of_zone = {zone: results.comfort(zone, index="operative", band=[low, high]).discomfort for zone in zones}
+
+    def sums() -> list[float]:
+        cells = page.locator("#comfort tr.sum td").all_inner_texts()
+        return [float(text.replace("−", "-")) for text in cells]
+
+    def expected(*counted: str) -> list[float]:
+        kinds = ("hot_hours", "hot_degree_hours", "cold_hours", "cold_degree_hours")
+        each = [sum(float(getattr(of_zone[zone], kind)) for zone in counted) for kind in kinds]
+        return [value for value in each for _ in ("now", "as sent")]
+
+    boxes = {zone: page.locator(f"#comfort input[data-zone='{zone}']") for zone in zones}
+    # The hall has neither a window nor gains nor loads: an attic would not count either.
+    assert {zone: box.is_checked() for zone, box in boxes.items()} == {"room": True, "hall": False}
+    assert sums() == pytest.approx(expected("room"), abs=0.06)
+    boxes["hall"].check()
+    both = sums()
+    assert both == pytest.approx(expected("room", "hall"), abs=0.6)  # whole hours above 99.95
+    assert max(abs(a - b) for a, b in zip(both, expected("room"), strict=True)) > 1.0
+    assert page.evaluate("document.activeElement.dataset.zone") == "hall"
+    page.keyboard.press("Space")
+    assert not boxes["hall"].is_checked()
+    runs_after(page, MOVE, [VARIED[1], 0.6])
+    assert not boxes["hall"].is_checked()  # stays as it was after a run
+    assert sums()[1::2] == pytest.approx(expected("room")[1::2], abs=0.06)
+
+
 def measured_air(simulation: Simulation) -> np.ndarray:
     """The column ``air`` of the logger at the records, which is linear between its stamps."""
     from crossing_features import measured

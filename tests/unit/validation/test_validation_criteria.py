@@ -40,7 +40,7 @@ def test_the_criteria_of_the_reference_study() -> None:
     }
     blind = next(v for v in verdicts if v.period == "blind" and v.metric == "max_error")
     assert blind.value == pytest.approx(-2.5)  # its size counts, its sign is kept
-    assert (blind.name, blind.unit) == ("|max error| <= 2 degC", "degC")
+    assert (blind.name, blind.unit) == ("|max error| <= 2 K", "degC")
     assert verdicts[0].unit == "%"
 
 

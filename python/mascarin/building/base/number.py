@@ -12,7 +12,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Final, get_args
 
 from pydantic_core import PydanticCustomError, core_schema
 
@@ -300,6 +300,9 @@ class Quantity:
         Whether only whole numbers have a meaning.
     """
 
+    #: What may stand beside a value.
+    KEYS: ClassVar[tuple[str, ...]] = ("value", "range", "source", "assumed")
+
     unit: str
     description: str
     spread: Spread
@@ -332,10 +335,9 @@ class Quantity:
         return self._held(number).of(self)
 
     def _noted(self, raw: Mapping[Any, Any]) -> Number:
-        keys = ("value", "range", "source", "assumed")
         for key in raw:
-            if key not in keys:
-                raise problem(f"key '{key}'", f"{', '.join(keys)}", did_you_mean(str(key), keys))
+            if key not in self.KEYS:
+                raise problem(f"key '{key}'", f"{', '.join(self.KEYS)}", did_you_mean(str(key), self.KEYS))
         if "value" not in raw:
             raise problem("no value", f"value: {self.expectation}", "Write {value: ..., range: [low, high]}.")
         source, assumed = raw.get("source"), raw.get("assumed", False)
@@ -393,7 +395,10 @@ class Quantity:
         kind = "a whole number" if self.integer else "a number"
         words = f" or one of {', '.join(self.words)}" if self.words else ""
         limits = f" {self.limits}" if str(self.limits) else ""
-        return f"{kind}{limits} [{self.unit}]{words} ({self.description})"
+        return f"{kind}{limits}{self._bracketed()}{words} ({self.description})"
+
+    def _bracketed(self) -> str:
+        return f" [{self.unit}]"
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler

@@ -43,8 +43,8 @@ def put(plain: dict[str, Any], part: Part, path: Sequence[str], value: Any) -> N
     path : sequence of str
         Steps of the path.
     value : any
-        What a file would hold there. A number keeps the range of the number that it replaces; None removes
-        the key.
+        What a file would hold there. A number keeps the range of the number that it replaces, and the unit
+        of one of a formula; None removes the key.
 
     Raises
     ------
@@ -73,7 +73,16 @@ def put(plain: dict[str, Any], part: Part, path: Sequence[str], value: Any) -> N
     before = piece_at(holder_or_leaf, [path[-1]])
     if isinstance(before, Number) and isinstance(value, int | float) and not isinstance(value, Number | bool):
         value = Number(value, range=before.range, quantity=before.quantity)
+    elif not isinstance(value, Number) and (notes := _notes(before)):
+        # The unit of a number of a formula stays, also in what is said of a value that is none.
+        value = {**notes, **(value if isinstance(value, Mapping) else {"value": value})}
     holder[key] = value
+
+
+def _notes(before: Any) -> dict[str, Any]:
+    """What a file has beside the value of a number, of its unit; nothing where its key says it."""
+    quantity = before.quantity if isinstance(before, Number) else None
+    return {} if quantity is None else quantity.notes()
 
 
 def replaced_at(building: Any, values: Mapping[str, tuple[Any, int]]) -> Any:

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin._io.numbers import in_percent
 from mascarin.calibration.base.problem import CalibrationProblem
 from mascarin.calibration.base.uncertainty import AT_BOUND, Uncertainty
 
@@ -42,7 +43,7 @@ def warnings(
     texts += correlated.values()
     named = {i for pair in correlated for i in pair}
     texts += [
-        f"{name} is not determined by these data: its interval covers {100.0 * covered[k]:.0f} % of the "
+        f"{name} is not determined by these data: its interval covers {in_percent(float(covered[k]))} of the "
         f"range searched; fix it, or measure a quantity that it affects"
         for k, name in enumerate(names)
         if covered[k] > _UNDETERMINED and not inactive[k] and k not in named

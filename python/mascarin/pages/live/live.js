@@ -168,6 +168,35 @@
     return count ? [sum / count, Math.sqrt(squares / count)] : [null, null];
   }
   const pairs = (mine, theirs) => mine.flatMap((value, k) => [value, theirs[k]]);
+  // Rooms that are ticked count in the sum; the name of one that is alone needs no box.
+  const uncounted = new Set(data.uncounted);
+  function tick(zone) {
+    const label = cell("label"), box = document.createElement("input");
+    box.type = "checkbox";
+    box.checked = !uncounted.has(zone);
+    box.dataset.zone = zone;
+    box.addEventListener("change", () => {
+      if (box.checked) uncounted.delete(zone); else uncounted.add(zone);
+      fillComfort();
+      document.querySelector(`#comfort input[data-zone="${CSS.escape(zone)}"]`).focus();
+    });
+    label.append(box, ` ${zone.replaceAll("_", " ")}`);
+    return label;
+  }
+  function fillComfort() {
+    if (!data.rooms.length) return;
+    const several = data.rooms.length > 1, counted = data.rooms.filter((zone) => !uncounted.has(zone));
+    const hours = Object.fromEntries(data.rooms.map((zone) => [zone, [discomfort(now, zone), discomfort(reference, zone)]]));
+    const tableRows = data.rooms.map((zone) => {
+      const tableRow = line(several ? "" : zone.replaceAll("_", " "), pairs(...hours[zone]).map(number));
+      if (several) tableRow.firstChild.append(tick(zone));
+      return tableRow;
+    });
+    const sum = (run) => [0, 1, 2, 3].map((k) => (run === 0 && !now ? null : counted.reduce((total, zone) => total + hours[zone][run][k], 0)));
+    const last = line("sum of the ticked rooms", pairs(sum(0), sum(1)).map(number));
+    last.className = "sum";
+    $("comfort").tBodies[0].replaceChildren(...tableRows, ...(several ? [last] : []));
+  }
   function fillEnergy() {
     const heats = (result) => [...data.flows.map(([flow, words]) => [words, result ? result.findings.into[flow] / 3.6e6 : null]), ["Stored in walls and air", result ? result.findings.stored / 3.6e6 : null]];
     const before = heats(reference), mine = heats(now);
@@ -185,7 +214,7 @@
     $("closure").textContent = now ? `The balance ${now.findings.closure <= data.checks.closed ? "closes" : "does not close"}: its residual is ${now.findings.closure.toExponential(1).replace("-", "−")} of all heat exchanged.` : "";
   }
   function fill() {
-    if (data.rooms.length) $("comfort").tBodies[0].replaceChildren(...data.rooms.map((zone) => line(zone, pairs(discomfort(now, zone), discomfort(reference, zone)).map(number))));
+    fillComfort();
     if ($("fit")) $("fit").tBodies[0].replaceChildren(...Object.keys(measured).map((name) => line(`${name}, ${outputs[name].unit.replace("°C", "K")}`, pairs(difference(now, name), difference(reference, name)).map((v) => Curves.shown(v, 2)))));
     fillEnergy();
     const lines = now ? now.warnings : [];

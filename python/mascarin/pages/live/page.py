@@ -16,7 +16,7 @@ from mascarin import __version__
 from mascarin._io import atomic, units
 from mascarin._io.arguments import names_of
 from mascarin.building.outputs.kinds import KINDS
-from mascarin.building.rooms import rooms
+from mascarin.building.rooms import lived_in, rooms
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import text
 from mascarin.fmu.contents import run_json
@@ -265,6 +265,8 @@ class _Page:
             "curves": list(self._curves),
             "records": len(json.loads(simulation.recorded.outputs)),
             "rooms": self._rooms(),
+            # Rooms that do not count in the sum of the comfort until someone ticks them: an attic.
+            "uncounted": [zone for zone in self._rooms() if zone not in lived_in(simulation.building)],
             "band": list(self._sent.band),
             "flows": [[flow, flow_words(flow)] for flow in FLOWS],
             "checks": self._checks(),

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.numbers import in_percent
 from mascarin._io.units import difference
 from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import factors_of
@@ -169,9 +170,9 @@ def carried_bands(
             )
         beyond = np.zeros(len(center)) if name is None else _beyond(center[:, s], sensor.range)
         if name is not None and beyond.any():
-            share = 100.0 * float(np.mean(beyond > 0.0))
+            share = in_percent(float(np.mean(beyond > 0.0)))
             words.append(
-                f"{observation.names[s]}: {share:.0f} % of the simulated values are outside of "
+                f"{observation.names[s]}: {share} of the simulated values are outside of "
                 f"{sensor.range[0]:.4g} to {sensor.range[1]:.4g} {unit}, the range of the identification"
             )
         distance[:, s] = np.maximum(outside, beyond)

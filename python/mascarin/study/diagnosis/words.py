@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import pandas as pd
 
-from mascarin._io.numbers import with_uncertainty
+from mascarin._io.numbers import in_percent, with_uncertainty
 from mascarin.diagnosis.hypotheses import GROUPS, WORDS, Cause
 
 if TYPE_CHECKING:
@@ -73,13 +73,13 @@ def of_finding(setup: StudyContext, finding: CauseEstimate) -> Cause:
     candidate, since = finding.candidate, _since(setup, finding.candidate.start)
     statement = _statement(setup, finding, since)
     evidence = (
-        f"In records without any cause something explains as much in {_percent(finding.p)} of cases (p "
+        f"In records without any cause something explains as much in {in_percent(finding.p)} of cases (p "
         f"{finding.p:.2g})"
     )
     if finding.told:
         text = (
             f"{statement}. {evidence}; that it is this and no other candidate has a probability of "
-            f"{_percent(finding.certainty)}."
+            f"{in_percent(finding.certainty)}."
         )
     else:
         alternatives = "; ".join(_short(setup, other) for other in finding.others)
@@ -89,7 +89,7 @@ def of_finding(setup: StudyContext, finding: CauseEstimate) -> Cause:
             )
         text = (
             f"Cannot tell: the residuals have a cause, but the measurements do not tell which candidate. "
-            f"{evidence}. The most probable of them, with {_percent(finding.certainty)}, is: {statement}. "
+            f"{evidence}. The most probable of them, with {in_percent(finding.certainty)}, is: {statement}. "
             f"It may as well be: {alternatives or 'none of the candidates'}."
         )
     return Cause(
@@ -130,9 +130,8 @@ def _statement(setup: StudyContext, finding: CauseEstimate, since: str) -> str:
         }
         return f"Input {subject}: the measured input {errors[what]}: check the instrument and its mounting"
     if candidate.group == "parameter":
-        value = with_uncertainty(finding.value, finding.error)
         return (
-            f"{subject}: a value of {value} {candidate.unit}".rstrip()
+            f"{subject}: a value of {_with_error(finding.value, finding)}"
             + ", outside of what its prior allows, explains "
             "the measurements better: check the number, or what the model lacks beside it"
         )
@@ -180,17 +179,13 @@ def _since(setup: StudyContext, start: float) -> str:
 
 
 def _size(finding: CauseEstimate) -> str:
-    value = with_uncertainty(abs(finding.value), finding.error)
+    return _with_error(abs(finding.value), finding)
+
+
+def _with_error(size: float, finding: CauseEstimate) -> str:
+    value = with_uncertainty(size, finding.error)
     error = with_uncertainty(finding.error, finding.error) if finding.error > 0.0 else ""
     return f"{value}{f' ± {error}' if error else ''} {finding.candidate.unit}".rstrip()
-
-
-def _percent(share: float) -> str:
-    """A probability in percent that is never rounded to certainty."""
-    percent = 100.0 * share
-    if percent < 0.1:
-        return f"{percent:.2g} %"
-    return f"{math.floor(percent) if percent >= 10.0 else round(percent, 1):g} %"
 
 
 def _side(value: float) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mascarin._io.numbers import in_percent
 from mascarin.calibration.errors.posterior_checks import widening, with_wider_intervals
 from mascarin.linear_algebra import one_thread
 from mascarin.study.carried.bands import daily_means, day_numbers
@@ -135,8 +136,8 @@ def _combined(
     note = "after the calibration; its parameters are the same on all other days"
     if len(combination.forms) > 1:
         note += f"; of {len(combination.forms)} forms '{best.label}' is used, "
-        weight = 100.0 * combination.weights[0]
-        note += f"with {weight:.0f} % of the weight by days left out of the identification"
+        weight = in_percent(float(combination.weights[0]))
+        note += f"with {weight} of the weight by days left out of the identification"
     run = replace(best.run, label="fitted", fit=fit, note=note)
     return Calibrated.judged(study, run, fit, intervals, profiles, combination, together)
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mascarin._io.numbers import in_percent
 from mascarin.study.steps.residuals import drivers
 from mascarin.study_document.analysis import TableEntry
 from mascarin.validation.days import EXTRAPOLATION_RATIO, DayChoice, choose_days
@@ -108,11 +109,12 @@ def day_words(found: DayChoice) -> list[str]:
     count, others = int(found.extrapolated.sum()), int((~found.used).sum())
     if count:
         texts.append(
-            f"{count} of {others} days that were not used for the calibration are extrapolations: their "
+            f"{count} of {others} days that were not used for the calibration "
+            f"{'is an extrapolation: its' if count == 1 else 'are extrapolations: their'} "
             f"leverage is more than {EXTRAPOLATION_RATIO:g} times that of the identification."
         )
     texts += [
-        f"{one.name}: {100.0 * one.outside:.0f} % of the other instants are outside of the range of the "
+        f"{one.name}: {in_percent(one.outside)} of the other instants are outside of the range of the "
         f"identification, {one.low:.4g} to {one.high:.4g}; they reach from {one.other_low:.4g} to "
         f"{one.other_high:.4g}."
         for one in found.ranges

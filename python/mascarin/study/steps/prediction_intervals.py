@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io.numbers import in_percent
 from mascarin.calibration.errors.posterior_checks import NOT_STATED
 from mascarin.study.context.step_cache import kept_series
 from mascarin.study.steps.findings import PredictionIntervals
@@ -162,8 +163,8 @@ def interval_entries(study: StudyContext, found: PredictionIntervals) -> dict[st
 def interval_words(study: StudyContext, found: PredictionIntervals) -> list[str]:
     """Sensors with a low coverage on the blind days, in words."""
     return [
-        f"{name}: the {100.0 * found.confidence:g} % prediction interval contains {100.0 * share:.0f} % of "
-        f"the values of the blind days: the model error there differs from that of the identification."
+        f"{name}: the {100.0 * found.confidence:g} % prediction interval contains {in_percent(float(share))} "
+        f"of the values of the blind days: the model error there differs from that of the identification."
         for name, share in zip(study.observation.names, found.coverage["blind"], strict=True)
         if share < _LOW_COVERAGE
     ]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.numbers import in_percent
 from mascarin.calibration.errors.posterior_checks import (
     Contradiction,
     of_errors,
@@ -130,9 +131,8 @@ def _coverage(study: StudyContext, run: ModelRun, intervals: PredictionIntervals
         yield Contradiction(
             "coverage",
             name,
-            f"{name}: the {100.0 * intervals.confidence:g} % band contains {100.0 * share:.0f} % of the "
-            "values "
-            "of the identification, from which it was made",
+            f"{name}: the {100.0 * intervals.confidence:g} % band contains {in_percent(share)} of the "
+            "values of the identification, from which it was made",
             factor,
         )
 
@@ -148,11 +148,9 @@ def _periods(study: StudyContext, intervals: PredictionIntervals) -> Iterator[Co
                 yield Contradiction(
                     "period",
                     name,
-                    f"{name}: the {100.0 * intervals.confidence:g} % band contains {100.0 * share:.0f} % "
-                    "of the "
-                    f"values of the {period} days: they differ from the identification, and the band does "
-                    "not "
-                    "hold there",
+                    f"{name}: the {100.0 * intervals.confidence:g} % band contains {in_percent(share)} "
+                    f"of the values of the {period} days: they differ from the identification, and the band "
+                    "does not hold there",
                 )
 
 

@@ -14,6 +14,8 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from mascarin.building.base.number import Limits, Number, OnlyGiven, Quantity, noted_form, problem, shown
 from mascarin.building.base.part import Part, insist
 
+#: A number and its unit in one text.
+_WITH_UNIT: Final = re.compile(r"(?P<value>[-+]?\d+(\.\d*)?(e[-+]?\d+)?)\s*(?P<unit>[^\d\s,].*)")
 _NAME: Final = re.compile(r"[A-Za-z_]\w*")
 _NO_RANGE: Final = "the source of a law gives numbers without a range: give one where they are uncertain"
 
@@ -22,12 +24,24 @@ _NO_RANGE: Final = "the source of a law gives numbers without a range: give one 
 class FormulaQuantity(Quantity):
     """Unit and limits of a number of a formula, which the description gives with it."""
 
+    KEYS: ClassVar[tuple[str, ...]] = (*Quantity.KEYS, "unit", "limits")
+
     def notes(self) -> dict[str, Any]:
         """What a file has of it beside the value."""
         plain: dict[str, Any] = {} if self.unit == "-" else {"unit": self.unit}
         if self.limits != Limits():
             plain["limits"] = [self.limits.lower, self.limits.upper]
         return plain
+
+    def _bracketed(self) -> str:
+        # Without a stated unit it may have any.
+        return "" if self.unit == "-" else super()._bracketed()
+
+    def _advice(self, raw: object) -> str:
+        with_unit = _WITH_UNIT.fullmatch(raw) if isinstance(raw, str) else None
+        if with_unit is None or self.unit != "-":
+            return super()._advice(raw)
+        return f'Write {{value: {with_unit["value"]}, unit: "{with_unit["unit"]}"}}.'
 
 
 def _quantity(name: str, unit: str, limits: Limits) -> FormulaQuantity:

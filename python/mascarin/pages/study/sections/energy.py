@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -60,6 +61,8 @@ def ledger_bars(ledger: LedgerEntry, *, narrow: bool = False) -> Markup | None:
         return None
     shape = _NARROW if narrow else _WIDE
     largest = max(abs(value) for _, value in terms) or 1.0
+    # All with the digits of the largest one.
+    decimals = max(0, 3 - math.floor(math.log10(largest / _MJ_PER_KWH)))
     height = 8.0 + shape.row * len(terms)
     svg = Svg(shape.width, height)
     for row, (label, value) in enumerate(terms):
@@ -74,7 +77,7 @@ def ledger_bars(ledger: LedgerEntry, *, narrow: bool = False) -> Markup | None:
             height=16.0 if not narrow else 13.0,
             class_="gain" if value >= 0 else "loss",
         )
-        words = f"{text.significant(value / _MJ_PER_KWH, 4)}\u00a0kWh"
+        words = f"{text.fixed(value / _MJ_PER_KWH, decimals)}\u00a0kWh"
         side, anchor = (6.0, "start") if value >= 0 else (-6.0, "end")
         svg.label(end + side, y + 15.0 + shape.drop, words, "layer-name", anchor)
     if not narrow:

@@ -95,9 +95,8 @@ def _scatter_words(study: StudyDocument) -> str:
     words = " and ".join(
         f"{text.span(values)}\u00a0{unit}".strip("\u00a0") for unit, values in by_unit.items()
     )
-    return (
-        f"; its error has a standard deviation of {words} by sensor ({period_label(study, period).lower()})"
-    )
+    varying = ", depending on the sensor" if any(len(values) > 1 for values in by_unit.values()) else ""
+    return f"; its error has a standard deviation of {words}{varying} ({period_label(study, period).lower()})"
 
 
 def _trust_words(study: StudyDocument) -> str:
@@ -112,8 +111,9 @@ def _trust_words(study: StudyDocument) -> str:
             f"{text.percent(min(covered.asked), 0)}"
         )
     if contradictions:
-        times = "once" if contradictions == 1 else f"{contradictions} times"
-        parts.append(f"it contradicts its data or what is known {times} (head of this page)")
+        points = "one point" if contradictions == 1 else f"{contradictions} points"
+        head = "see the head of this page"
+        parts.append(f"the model contradicts its data or what is known in {points} ({head})")
     elif study.parameters:
         parts.append("no contradiction with the data of its identification was seen")
     if not parts:

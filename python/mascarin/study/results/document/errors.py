@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io.numbers import in_percent
 from mascarin._io.units import difference
 from mascarin.calibration.base.joined_problem import shares_of
 from mascarin.calibration.errors.pseudo_bma_weights import LARGEST_LOSS, SMALL_ON_A_DAY
@@ -71,14 +72,15 @@ def _words_of_forms(combination: Combination) -> str:
     behind = used.joint.by_day.sum() - combination.by_day.sum(axis=1)
     pairs = zip(combination.forms[1:], combination.weights[1:], behind[1:], strict=True)
     worse = [
-        f"'{form.label}' ({100 * weight:.0f} %, log density {abs(less):.1f} "
+        f"'{form.label}' ({in_percent(weight)}, log density {abs(less):.1f} "
         f"{'lower' if less > 0 else 'higher'})"
         for form, weight, less in pairs
         if weight >= _NAMED and form.label not in alike_labels
     ]
-    said = [f"Form of the model: '{used.label}' is used (weight {100 * combination.weights[0]:.0f} %)."]
+    weight_used = in_percent(float(combination.weights[0]))
+    said = [f"Form of the model: '{used.label}' is used (weight {weight_used})."]
     if alike:
-        same = ", ".join(f"'{form.label}' ({100 * weight:.0f} %)" for form, weight in alike)
+        same = ", ".join(f"'{form.label}' ({in_percent(weight)})" for form, weight in alike)
         said.append(f"The identification does not tell it from {same}.")
     if worse:
         said.append(f"Less likely over all days left out, but not excluded: {', '.join(worse)}.")
