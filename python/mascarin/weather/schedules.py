@@ -18,6 +18,7 @@ from mascarin.tables.times import local_time
 from mascarin.weather.climate import Climate
 from mascarin.weather.forcing import column_means, column_values, record_of
 from mascarin.weather.reading.measurements import Measurements
+from mascarin.weather.soil import of_soil
 from mascarin.weather.records.channels import TEMPERATURES, UNITS
 
 if TYPE_CHECKING:
@@ -126,6 +127,8 @@ def scheduled(
 
     def values_of(name: str) -> Array:
         course = schedules[name]
+        if hasattr(course, "ladder"):
+            return of_soil(climate, course, steps)
         if not course.columns:
             # Only a schedule has no columns.
             pieces = pieces_of(cast("Schedule", course), timezone, steps.first, steps.last)

@@ -8,6 +8,7 @@ from typing import Any
 from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.air import driven
 from mascarin.building.engine_input.ids import Ids, Json, Positions, corners, deeper, fields_of
+from mascarin.building.engine_input.soil import behind_of, soil_of
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.convection import Convection, Measured
@@ -26,6 +27,7 @@ def describe_surface(
     """Describe a surface with its two sides."""
     zones = list(building.zones)
     return {
+        **_soil(building, name, channels[1]),
         "name": name,
         "construction": list(building.constructions).index(surface.construction),
         "area": ids("area"),
@@ -35,6 +37,21 @@ def describe_surface(
         "azimuth": ids("azimuth"),
         "outside": _side(surface.outside, zones, channels, deeper(ids, "outside")),
         "inside": _side(surface.inside, zones, channels, deeper(ids, "inside")),
+    }
+
+
+def _soil(building: Description, name: str, positions: Positions) -> Json:
+    """Soil behind a surface, from the outermost cell to the construction; nothing where there is none."""
+    soil = soil_of(building, name)
+    if soil is None:
+        return {}
+    resistances, capacities = soil.ladder.without_last
+    return {
+        "soil": {
+            "capacities": capacities[::-1],
+            "resistances": resistances[::-1],
+            "heat": positions[soil.name],
+        }
     }
 
 
@@ -65,6 +82,8 @@ def _facing(side: Side, zones: list[str], columns: list[str], positions: Positio
         return {"kind": "measured", "channel": columns.index(side.measured)}
     if side.scheduled is not None:
         return {"kind": "measured", "channel": columns.index(schedule_channel(side.scheduled))}
+    if side.soil is not None:
+        return {"kind": "measured", "channel": positions[behind_of(side.soil)]}
     if side.ground is not None:
         return {"kind": "imposed", "law": {"kind": "ground"} | fields_of(side.ground, ids, "ground.")}
     if side.imposed is not None:
