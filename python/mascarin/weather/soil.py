@@ -45,16 +45,18 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
     hours, air = _hourly(climate, steps)
     if course.before is None and len(air) < _YEAR:
         raise InputError(
-            f"soil_blocks.{course.block}.before: found {len(air) / 24.0:.0f} days of weather and no outdoor air before; "
-            "expected a year of weather, or the yearly mean of the years before it. Write 'before: {mean: 10, "
-            "amplitude: 8, coldest_day: 15}'"
+            f"soil_blocks.{course.block}.before: found {len(air) / 24.0:.0f} days of weather and no outdoor "
+            "air before; expected a year of weather, or the yearly mean of the years before it. Write "
+            "'before: {mean: 10, amplitude: 8, coldest_day: 15}'"
         )
     before = course.before
     if before is not None:
         before = (before[0] - course.behind, *before[1:])
-    heat = heat_of_outdoors(course.ladder, air - course.behind, before, _day_of_year(climate, steps.first + float(hours[0])))
+    heat = heat_of_outdoors(
+        course.ladder, air - course.behind, before, _day_of_year(climate, steps.first + float(hours[0]))
+    )
     middles = 0.5 * (steps.edges[:-1] + steps.edges[1:])
-    return np.asarray(np.interp(middles, hours, heat)[:, None])
+    return np.asarray(np.interp(middles, hours, heat[:, course.cell])[:, None])
 
 
 def _hourly(climate: Climate, steps: Steps) -> tuple[Array, Array]:
@@ -74,7 +76,7 @@ def _hourly(climate: Climate, steps: Steps) -> tuple[Array, Array]:
     known = np.isfinite(air)
     if not known.all():
         air = np.interp(edges[1:], edges[1:][known], air[known])
-    return edges[1:] + (first - steps.first), air
+    return np.asarray(edges[1:] + (first - steps.first)), np.asarray(air, dtype=np.float64)
 
 
 def _day_of_year(climate: Climate, seconds: float) -> float:

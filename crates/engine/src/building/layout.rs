@@ -72,10 +72,10 @@ pub struct ZonePlan {
 /// Layer of the cells of soil: none of the construction.
 pub(crate) const SOIL: usize = usize::MAX;
 
-/// Index of the heat that the outdoor air lets into the soil of a surface: those of all soil follow the heat sources.
+/// Index of the first of the two heats by the outdoor air into the soil of a surface: those of all soil follow the heat sources.
 pub(crate) fn soil_source(description: &Description, surface: usize) -> usize {
     let before = description.surfaces[..surface].iter().filter(|other| other.soil.is_some()).count();
-    description.heat_sources.len() + before
+    description.heat_sources.len() + 2 * before
 }
 
 impl SurfacePlan {
@@ -94,7 +94,8 @@ impl SurfacePlan {
         let mut layer_cells = Vec::new();
         let mut planes = Vec::new();
         if soil > 0 {
-            planes.push((soil_source(description, surface), soil - 1));
+            let source = soil_source(description, surface);
+            planes.extend([(source, soil - 1), (source + 1, soil - 2)]);
         }
         let mut nonlinear = false;
         for (index, layer) in construction.layers.iter().enumerate() {

@@ -34,7 +34,16 @@ Name = Annotated[str, AfterValidator(_name)]
 def known_names(description: Any) -> Iterator[None]:
     """Let the parts that are read inside refer to the sections of this description."""
     sections = {}
-    for section in ("materials", "constructions", "zones", "surfaces", "schedules", "glazings", "controls", "soil_blocks"):
+    for section in (
+        "materials",
+        "constructions",
+        "zones",
+        "surfaces",
+        "schedules",
+        "glazings",
+        "controls",
+        "soil_blocks",
+    ):
         named = description.get(section) if isinstance(description, Mapping) else None
         sections[section] = dict.fromkeys(map(str, named)) if isinstance(named, Mapping) else {}
     token = _names.set(sections)

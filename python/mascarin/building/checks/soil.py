@@ -33,8 +33,8 @@ def soil_faults(building: Description) -> Iterator[InitErrorDetails]:
             )
     for name, surfaces in on.items():
         yield from _one_surface(name, surfaces)
-        for surface in surfaces[:1]:
-            yield from _same_area(building, name, surface)
+        for floor in surfaces[:1]:
+            yield from _same_area(building, name, floor)
         yield from _inside_the_block(building, name)
     yield from _apart(building, on)
     yield from _weather_as_read(building)
@@ -77,8 +77,8 @@ def _same_area(building: Description, name: str, surface: str) -> Iterator[InitE
         ("surfaces", surface, "area"),
         f"{float(area):g} m2",
         f"{expected:g} m2 within 1 %: floor{walls} of block '{name}'",
-        "Correct the area, or length and width of the block; for a floor that is no rectangle leave 'length:' out and "
-        "write the area over half of the perimeter as 'width:'.",
+        "Correct the area, or length and width of the block; for a floor that is no rectangle leave "
+        "'length:' out and write the area over half of the perimeter as 'width:'.",
     )
 
 

@@ -25,8 +25,10 @@ class SoilCourse:
     block : str
         Name of the block.
     kind : {"heat_flux", "temperature"}
-        Heat that the outdoor air lets into its innermost cell [W/m2], or the temperature behind the outermost one
+        Heat by the outdoor air into one of its cells [W/m2], or the temperature behind the outermost one
         [degC].
+    cell : int
+        Which cell: 0 for the innermost one, 1 for the next.
     geometry : SoilGeometry
         What its ladder follows from.
     behind : float
@@ -37,6 +39,7 @@ class SoilCourse:
 
     block: str
     kind: Literal["heat_flux", "temperature"]
+    cell: int
     geometry: SoilGeometry
     behind: float
     before: tuple[float, float, float] | None
@@ -44,7 +47,7 @@ class SoilCourse:
     @property
     def name(self) -> str:
         """Name of its channel; no schedule has one with a space."""
-        return f"soil {self.block}" if self.kind == "heat_flux" else behind_of(self.block)
+        return heat_of(self.block, self.cell) if self.kind == "heat_flux" else behind_of(self.block)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -57,6 +60,11 @@ class SoilCourse:
         from mascarin.building.soil.ladder import ladder_of
 
         return ladder_of(self.geometry)
+
+
+def heat_of(block: str, cell: int) -> str:
+    """Name of the channel of the heat by the outdoor air into a cell of a block."""
+    return f"soil {block} cell {cell + 1}"
 
 
 def behind_of(block: str) -> str:
@@ -96,6 +104,9 @@ def soil_courses(building: Description) -> Iterator[SoilCourse]:
 def _courses(building: Description, surface: str, name: str) -> Iterator[SoilCourse]:
     block = building.soil_blocks[name]
     geometry, before = geometry_of(building, surface, block), block.before
-    years = None if before is None else (float(before.mean), float(before.amplitude), float(before.coldest_day))
-    yield SoilCourse(name, "heat_flux", geometry, block.behind, years)
-    yield SoilCourse(name, "temperature", geometry, block.behind, years)
+    years = (
+        None if before is None else (float(before.mean), float(before.amplitude), float(before.coldest_day))
+    )
+    for cell in (0, 1):
+        yield SoilCourse(name, "heat_flux", cell, geometry, block.behind, years)
+    yield SoilCourse(name, "temperature", 0, geometry, block.behind, years)

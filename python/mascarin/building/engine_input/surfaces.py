@@ -8,7 +8,7 @@ from typing import Any
 from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.air import driven
 from mascarin.building.engine_input.ids import Ids, Json, Positions, corners, deeper, fields_of
-from mascarin.building.engine_input.soil import behind_of, soil_of
+from mascarin.building.engine_input.soil import behind_of, heat_of, soil_of
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.convection import Convection, Measured
@@ -50,7 +50,7 @@ def _soil(building: Description, name: str, positions: Positions) -> Json:
         "soil": {
             "capacities": capacities[::-1],
             "resistances": resistances[::-1],
-            "heat": positions[soil.name],
+            "heat": [positions[heat_of(soil.block, cell)] for cell in (0, 1)],
         }
     }
 

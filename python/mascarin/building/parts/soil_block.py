@@ -55,8 +55,8 @@ class OutdoorsBefore(Part):
 class SoilBlock(Part):
     """Soil below and around a rectangle (or a strip), in three (or two) dimensions.
 
-    It is solved by finite volumes and reduced once, before a run, to a row of a few cells behind the surface whose
-    outside is ``soil: NAME``. None of its numbers varies within a compiled run.
+    It is solved by finite volumes and reduced once, before a run, to a row of a few cells behind the surface
+    whose outside is ``soil: NAME``. None of its numbers varies within a compiled run.
 
     Examples
     --------
@@ -67,8 +67,8 @@ class SoilBlock(Part):
 
     length: q.SoilLength | None = Field(
         None,
-        description="Length of the floor between its walls; none: a strip, whose width is the area over half of the "
-        "perimeter",
+        description="Length of the floor between its walls; none: a strip, whose width is the area over "
+        "half of the perimeter",
     )
     width: q.SoilWidth
     wall_thickness: q.WallThickness
@@ -82,10 +82,13 @@ class SoilBlock(Part):
     deep_temperature: Annotated[
         q.DeepTemperature | None, Field(description="Temperature of the bottom; none: no heat passes it")
     ] = None
-    edge: SoilEdge | None = Field(None, description="Insulation along the edge of the floor; none: there is none")
+    edge: SoilEdge | None = Field(
+        None, description="Insulation along the edge of the floor; none: there is none"
+    )
     before: OutdoorsBefore | None = Field(
         None,
-        description="Outdoor air before the weather begins; none: the first year of the weather, again and again",
+        description="Outdoor air before the weather begins; none: the first year of the weather, again and "
+        "again",
     )
     source: str | None = Field(None, description="Where the properties come from")
 
@@ -99,7 +102,7 @@ class SoilBlock(Part):
 
     @property
     def behind(self) -> float:
-        """Temperature behind its last cell: of the deep soil, or one that the heat does not depend on. [degC]"""
+        """Temperature behind its last cell: of the deep soil, or any where there is none. [degC]"""
         if self.deep_temperature is not None:
             return float(self.deep_temperature)
         return 10.0 if self.before is None else float(self.before.mean)

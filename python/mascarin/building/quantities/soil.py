@@ -42,9 +42,7 @@ SoilFilm = Annotated[
         "W/(m2 K)", "Heat transfer coefficient, radiation included", Limits(at_least=0.5, at_most=1e5)
     ),
 ]
-SoilExtent = Annotated[
-    Number, _structural("m", "Extent of the soil", Limits(at_least=1.0, at_most=200.0))
-]
+SoilExtent = Annotated[Number, _structural("m", "Extent of the soil", Limits(at_least=1.0, at_most=200.0))]
 DeepTemperature = Annotated[Number, _structural("degC", "Temperature of the deep soil", TEMPERATURE)]
 OutdoorMean = Annotated[Number, _structural("degC", "Yearly mean of the outdoor air", TEMPERATURE)]
 OutdoorAmplitude = Annotated[
@@ -52,7 +50,9 @@ OutdoorAmplitude = Annotated[
 ]
 ColdestDay = Annotated[
     Number,
-    _structural("d", "Day of the year on which the outdoor air is coldest", Limits(at_least=0.0, at_most=366.0)),
+    _structural(
+        "d", "Day of the year on which the outdoor air is coldest", Limits(at_least=0.0, at_most=366.0)
+    ),
 ]
 EdgeExtent = Annotated[
     Number,

@@ -1,8 +1,8 @@
 """Conduction in a block of soil by finite volumes: ``C dT/dt = -K T + sum b_port T_port``, symmetric.
 
-A quarter of a rectangle (or half of a strip) is calculated; its planes of symmetry and its far sides let no heat
-through. The soil touches the zone (floor, and walls of a basement), the outdoor air and, where it is given, the deep
-soil. The ground under the walls touches nothing.
+A quarter of a rectangle (or half of a strip) is calculated; its planes of symmetry and its far sides let no
+heat through. The soil touches the zone (floor, and walls of a basement), the outdoor air and, where it is
+given, the deep soil. The ground under the walls touches nothing.
 
 Source: Patankar 1980, Numerical Heat Transfer and Fluid Flow, ch. 4 (finite volumes, conductances in series).
 """
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 #: Relative residual at which a solution is taken, and the iterations after which none is.
 _RESIDUAL: Final = 1e-7
 _MOST: Final = 2000
+#: Rate that is none [1/s]: once in the age of the earth.
+_NEVER: Final = 1e-16
 
 
 @dataclass(frozen=True)
@@ -47,12 +49,13 @@ class SoilGeometry:
     conductivity, capacity : float
         Of the soil. [W/(m K)], [J/(m3 K)]
     inside, outside : float
-        From the zone to the soil through film and construction, and from the soil to the outdoor air. [W/(m2 K)]
+        From the zone to the soil through film and construction, and from the soil to the outdoor air.
+        [W/(m2 K)]
     deep : bool
         Whether the bottom has a given temperature; else it lets no heat through.
     horizontal, vertical : (float, float)
-        Insulation below the floor along its edge, its reach; down along the outer side of the walls, its depth;
-        and their resistances. [m], [m2 K/W]
+        Insulation below the floor along its edge, its reach; down along the outer side of the walls, its
+        depth; and their resistances. [m], [m2 K/W]
     """
 
     length: float
@@ -146,7 +149,7 @@ class FiniteVolumes:
         self._parts = 2.0 if block.strip else 4.0
         links = [self._links(direction, outer) for direction in range(3)]
         self.inside, self.outside, self.deep = self._ports(inner, outer)
-        self._matrix = self._assemble(links)
+        self.matrix = self._assemble(links)
         self.capacities = self._parts * block.capacity * self._volumes()[self._soil]
         # The top is part of what is solved where it is all that is not separable.
         top = 0.0 if block.layered else self._top()
@@ -188,9 +191,7 @@ class FiniteVolumes:
         block, z = self.block, self._axes.middles[2]
         zone, air, deep = (np.zeros(self._shape) for _ in range(3))
         half = [0.5 * widths / block.conductivity for widths in self._axes.widths]
-        air[:, :, 0] = np.where(
-            outer, 0.0, self._faces(2)[:, :, 0] / (1.0 / block.outside + half[2][0])
-        )
+        air[:, :, 0] = np.where(outer, 0.0, self._faces(2)[:, :, 0] / (1.0 / block.outside + half[2][0]))
         below = int(np.searchsorted(z, block.basement))
         covered = inner & ~self._beyond_edge_insulation()
         resistance = 1.0 / block.inside + np.where(covered, block.horizontal[1], 0.0)
@@ -206,7 +207,8 @@ class FiniteVolumes:
             _after(zone, direction)[...] += np.where(beside, beyond, 0.0)
         if block.deep:
             deep[:, :, -1] = self._faces(2)[:, :, -1] / half[2][-1]
-        return tuple(self._parts * port[self._soil] for port in (zone, air, deep))  # type: ignore[return-value]
+        zone, air, deep = (self._parts * port[self._soil] for port in (zone, air, deep))
+        return zone, air, deep
 
     def _beyond_edge_insulation(self) -> Flags:
         """Cells, seen from above, that no insulation along the edge of the floor covers."""
@@ -215,14 +217,16 @@ class FiniteVolumes:
         core = (x < 0.5 * block.width - reach)[:, None]
         return core if block.strip else core & (y < 0.5 * block.length - reach)[None, :]
 
-    def _assemble(self, links: list[tuple[Array, Flags]]) -> object:
+    def _assemble(self, links: list[tuple[Array, Flags]]) -> Any:
         """The matrix of conduction, ports included."""
         from scipy import sparse
 
         number = np.cumsum(self._soil.ravel()).reshape(self._shape) - 1
         size = int(self._soil.sum())
         diagonal = self.inside + self.outside + self.deep
-        rows, columns, values = [], [], []
+        rows: list[Any] = []
+        columns: list[Any] = []
+        values: list[Any] = []
         for direction, (conductance, both) in enumerate(links):
             one, other = (part(number, direction)[both] for part in (_before, _after))
             through = conductance[both]
@@ -238,7 +242,7 @@ class FiniteVolumes:
 
     def image(self, fields: Array) -> Array:
         """``K`` times fields of temperatures. [W]"""
-        return np.asarray(self._matrix @ fields)  # type: ignore[operator]
+        return np.asarray(self.matrix @ fields)
 
     def solve(self, known: Array, rate: float = 0.0, guess: Array | None = None) -> Array:
         """Solve ``(K + rate C) T = known`` by conjugate gradients.
@@ -276,8 +280,10 @@ class FiniteVolumes:
         return _conjugate(known, (image, eased), guess)
 
     def _by_surface(self, known: Array, rate: float, guess: Array | None) -> Array:
-        """Temperatures of a block by those of its top, which heat that enters there alone has an effect on."""
+        """Temperatures of a block that heat enters by its top alone, from those of the top."""
         shape = self._shape
+        # A block that nothing holds but its top has no response to heat that never changes.
+        rate = rate if self.block.deep else max(rate, _NEVER)
         touching = (self.inside + self.outside).reshape(shape)[:, :, 0]
         entering = known.reshape(shape)[:, :, 0]
         response, resists, eased = self._separable.surface(rate, float(touching.sum()))
@@ -315,14 +321,14 @@ def _conjugate(known: Array, functions: tuple[Fields, Fields], guess: Array | No
     )
 
 
-def _before(values: Array, direction: int) -> Array:
+def _before(values: Any, direction: int) -> Any:
     """All but the last along a direction."""
     if values.shape[direction] == 1:
         return values if direction == 2 else values[(slice(None),) * direction + (slice(0, 0),)]
     return values[(slice(None),) * direction + (slice(None, -1),)]
 
 
-def _after(values: Array, direction: int) -> Array:
+def _after(values: Any, direction: int) -> Any:
     """All but the first along a direction."""
     if values.shape[direction] == 1:
         return values if direction == 2 else values[(slice(None),) * direction + (slice(0, 0),)]
@@ -335,7 +341,9 @@ class _Separable:
     Source: Lynch, Rice and Thomas 1964, doi:10.1007/BF01386067 (direct solution by tensor products).
     """
 
-    def __init__(self, widths: tuple[Array, Array, Array], block: SoilGeometry, parts: float, top: float) -> None:
+    def __init__(
+        self, widths: tuple[Array, Array, Array], block: SoilGeometry, parts: float, top: float
+    ) -> None:
         self._block, self._parts = block, parts
         ends = [(0.0, 0.0), (0.0, 0.0), (top, 0.0)]
         if block.deep:
@@ -359,12 +367,11 @@ class _Separable:
 
         return inverse
 
-
     def surface(self, rate: float, touching: float) -> tuple[Fields, Fields, Fields]:
         """Functions of heat into the top, and of its temperatures, for a rate [1/s].
 
-        The temperatures of the block by heat; the heat that the top takes; and its temperatures where it touches
-        the same everywhere, ``touching`` in all. [W/K]
+        The temperatures of the block by heat; the heat that the top takes; and its temperatures where it
+        touches the same everywhere, ``touching`` in all. [W/K]
         """
         x, y, z = self._x, self._y, self._z
         factor = 1.0 / (self._parts * (self._rates + rate * self._block.capacity))
@@ -388,7 +395,7 @@ class _Separable:
 
 
 def _modes(widths: Array, conductivity: float, ends: tuple[float, float]) -> tuple[Array, Array]:
-    """Eigenvalues [W/(m3 K)] and modes of conduction along a row of cells that touch something at their ends."""
+    """Eigenvalues [W/(m3 K)] and modes of conduction along a row of cells, with what its ends touch."""
     from scipy.linalg import eigh_tridiagonal
 
     links = conductivity / (0.5 * (widths[:-1] + widths[1:]))

@@ -1,13 +1,13 @@
-"""A block of soil reduced to a ladder of a few cells, with the heat that the weather lets into its first cell.
+"""A block of soil reduced to a ladder of a few cells.
 
-The response of the floor to the zone is that of resistances and heat capacities only. Such a response is that of a
-row of cells, each with a heat capacity and a resistance to the next (Cauer's first form), which is a wall for the
-engine: symmetric, stable, and with a heat content. A rational Krylov space makes it exact, with its slope, at a set of
-rates from decades to minutes; the Lanczos method makes the space a row.
+The response of the floor to the zone is that of resistances and heat capacities only. Such a response is
+that of a row of cells, each with a heat capacity and a resistance to the next (Cauer's first form), which
+is a wall for the engine: symmetric, stable, and with a heat content. A rational Krylov space makes it
+exact, with its slope, at a set of rates from decades to minutes; the Lanczos method makes the space a row.
 
-Sources: Cauer 1926, doi:10.1007/BF01662000 (ladders); Ruhe 1984, doi:10.1016/0024-3795(84)90221-0 (rational Krylov
-spaces); Lanczos 1950, doi:10.6028/jres.045.026; Odabasioglu, Celik and Pileggi 1998, doi:10.1109/43.712097 (projected
-networks stay passive).
+Sources: Cauer 1926, doi:10.1007/BF01662000 (ladders); Ruhe 1984, doi:10.1016/0024-3795(84)90221-0 (rational
+Krylov spaces); Lanczos 1950, doi:10.6028/jres.045.026; Odabasioglu, Celik and Pileggi 1998,
+doi:10.1109/43.712097 (projected networks stay passive).
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: Rates at which the ladder has the response of the finite volumes [1/s]: the steady state, and from forty years
-#: to ten minutes.
+#: Rates at which the ladder has the response of the finite volumes [1/s]: the steady state, and from forty
+#: years to ten minutes.
 _SLOWEST, _FASTEST, _RATES = 1.0 / (40.0 * 3.15e7), 1.0 / 600.0, 11
-#: Part of the resistance of the soil that the last cell has behind it at least: the rounding of a cell of the heat
-#: capacity of a kilometre of soil would be in the energy balance. [-]
+#: Part of the resistance of the soil that the last cell has behind it at least: the rounding of a cell of
+#: the heat capacity of a kilometre of soil would be in the energy balance. [-]
 _LAST: Final = 0.02
 #: Part of the largest direction of the space below which another one counts as none. [-]
 _DEPENDENT: Final = 1e-9
@@ -43,18 +43,20 @@ class SoilLadder:
     Attributes
     ----------
     resistances : tuple of float
-        From the lower side of the construction to the first cell, between cells, and from the last one to what lies
-        behind; one more than there are cells. [m2 K/W]
+        From the lower side of the construction to the first cell, between cells, and from the last one to
+        what lies behind; one more than there are cells. [m2 K/W]
     capacities : tuple of float
         Of the cells. [J/(m2 K)]
     shares : tuple of float
         Heat into each cell by the outdoor air, for each degree that it is warmer than what lies behind.
         [W/(m2 K)]
     loss : float
-        Steady heat from the zone for each degree that it is warmer than outdoors and the deep soil, through film
-        and construction. [W/(m2 K)]
+        Steady heat from the zone for each degree that it is warmer than outdoors and the deep soil, through
+        film and construction. [W/(m2 K)]
     loss_to_deep : float
         The part of it that the deep soil takes. [W/(m2 K)]
+    inside : float
+        Of film and construction, as the ladder was made. [W/(m2 K)]
     """
 
     resistances: tuple[float, ...]
@@ -62,13 +64,14 @@ class SoilLadder:
     shares: tuple[float, ...]
     loss: float
     loss_to_deep: float
+    inside: float
 
     @property
     def without_last(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Resistances and heat capacities without the last cells, which next to nothing lies behind.
 
-        Their heat capacity, that of a kilometre of soil, is far larger than what the floor feels of it: its rounding
-        would be in the energy balance. The steady state stays as it is.
+        Their heat capacity, that of a kilometre of soil, is far larger than what the floor feels of it: its
+        rounding would be in the energy balance. The steady state stays as it is.
         """
         resistances, capacities = list(self.resistances), list(self.capacities)
         whole = sum(resistances)
@@ -114,13 +117,15 @@ def ladder_of(block: SoilGeometry) -> SoilLadder:
         tuple((shares / area).tolist()),
         loss / area,
         float(volumes.deep @ steady) / area,
+        block.inside,
     )
 
 
 def _space(volumes: FiniteVolumes, rates: Array) -> tuple[Array, Array]:
-    """Space of the temperatures by one degree in the zone that grows at each of some rates, the first being zero.
+    """Space of the temperatures by one degree in the zone that grows at each of some rates, 0 first.
 
-    Its fields have a heat content of one, and none in common (Gram and Schmidt, twice). The steady one comes beside.
+    Its fields have a heat content of one, and none in common (Gram and Schmidt, twice). The steady one
+    comes beside.
     """
     capacities = volumes.capacities
     fields: list[Array] = []
@@ -145,7 +150,7 @@ def _space(volumes: FiniteVolumes, rates: Array) -> tuple[Array, Array]:
 
 
 def _lanczos(matrix: Array, start: Array) -> tuple[Array, Array, Array]:
-    """The matrix as a row: its diagonal, what is beside it, and the vectors, of which the first is the start."""
+    """The matrix as a row: its diagonal, what is beside it, and the vectors from the start on."""
     size = len(matrix)
     vectors = np.zeros((size, size))
     diagonal, beside = np.zeros(size), np.zeros(size)
@@ -170,8 +175,8 @@ def _ladder(diagonal: Array, beside: Array, port: tuple[float, float]) -> tuple[
         conductance = rate * capacity - conductance
         if not conductance > 0.0:
             raise SolverError(
-                f"soil: cell {k + 1} of the ladder has a conductance of {conductance:g} W/K; expected one above 0. "
-                "Give sizes of the block that are closer to each other"
+                f"soil: cell {k + 1} of the ladder has a conductance of {conductance:g} W/K, expected one "
+                "above 0. Give sizes of the block that are closer to each other"
             )
         conductances.append(conductance)
         if k < len(beside):

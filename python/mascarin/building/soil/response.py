@@ -13,19 +13,23 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: Hours of a year, and days. [h], [d]
+#: Hours of a year, and seconds of an hour and a day.
 YEAR_HOURS: Final = 8760
-_YEAR_DAYS: Final = 365.0
-_HOUR: Final = 3600.0
+_HOUR, _DAY = 3600.0, 86400.0
 
 
 def heat_of_outdoors(
     ladder: SoilLadder, excess: Array, before: tuple[float, float, float] | None, day: float
 ) -> Array:
-    """Heat into the first cell of a ladder that is held at the temperature behind it. [W/m2]
+    """Heat by the outdoor air into the two innermost cells of a ladder. [W/m2]
 
-    The other cells follow the outdoor air; each of their modes is integrated exactly, for air that is linear
-    between the hours. What the heat does in the first cell is part of the run.
+    Temperatures are the sum of two: those by the outdoor air with a zone that is as warm as what lies
+    behind, and those by the zone. The first are known before a run. Cells of a run have the second, but for
+    the innermost one, which has the sum: what couples the two is heat into this cell and the next. So a run
+    needs to know nothing of the years before, and a zone that has been what it is at the start is at rest
+    with its soil.
+
+    Each mode is integrated exactly, for air that is linear between the hours.
 
     Parameters
     ----------
@@ -34,59 +38,55 @@ def heat_of_outdoors(
     excess : ndarray
         Outdoor air over what lies behind, at each hour. [K]
     before : (float, float, float) or None
-        Mean excess, amplitude and coldest day of the year of the outdoor air before the hours begin; None: the first
-        year of the hours, again and again. [K], [K], [d]
+        Mean excess, amplitude and coldest day of the year of the outdoor air before the hours begin; None:
+        the first year of the hours, again and again. [K], [K], [d]
     day : float
         Day of the year at the first hour. [d]
 
     Returns
     -------
-    ndarray
-        At each hour. [W/m2]
+    ndarray, shape (hours, 2)
+        Of the innermost cell and of the next one.
 
     References
     ----------
     Carslaw and Jaeger 1959, Conduction of Heat in Solids, ch. 2.6 (periodic solutions).
     """
     shares, capacities = np.array(ladder.shares), np.array(ladder.capacities)
-    heat = shares[0] * excess
-    if len(capacities) == 1:
-        return np.asarray(heat)
-    rates, modes, to_first = _modes(ladder)
-    driven = modes.T @ (shares[1:] / np.sqrt(capacities[1:]))
-    if before is None:
-        year = np.append(excess[:YEAR_HOURS], excess[0])
-        start = _periodic(rates, driven, year)
-    else:
-        start = _swung(rates, driven, before, day)
-    for rate, share, weight, first in zip(rates, driven, to_first, start, strict=True):
-        heat = heat + weight * _followed(float(rate), share * excess, float(first))
-    return np.asarray(heat)
+    link = 1.0 / ladder.resistances[1]
+    rates, modes = _modes(ladder)
+    driven = modes.T @ (shares / np.sqrt(capacities))
+    start = _periodic(rates, driven, excess) if before is None else _swung(rates, driven, before, day)
+    first, second = np.zeros_like(excess), np.zeros_like(excess)
+    to_first, to_second = (modes[k] / np.sqrt(capacities[k]) for k in (0, 1))
+    for k, rate in enumerate(rates):
+        mode = _followed(float(rate), driven[k] * excess, float(start[k]))
+        first += to_first[k] * mode
+        second += to_second[k] * mode
+    return np.column_stack([shares[0] * excess + link * second, -link * first])
 
 
-def _modes(ladder: SoilLadder) -> tuple[Array, Array, Array]:
-    """Rates [1/s] and modes of the cells behind the first one, and the heat of each into that one."""
+def _modes(ladder: SoilLadder) -> tuple[Array, Array]:
+    """Rates [1/s] and modes of the cells between a zone and what lies behind, both at rest."""
     from scipy.linalg import eigh_tridiagonal
 
-    capacities = np.array(ladder.capacities)[1:]
-    links = 1.0 / np.array(ladder.resistances)[1:]
+    capacities = np.array(ladder.capacities)
+    resistances = np.array(ladder.resistances)
+    resistances[0] += 1.0 / ladder.inside
+    links = 1.0 / resistances
     diagonal = (links[:-1] + links[1:]) / capacities
     beside = -links[1:-1] / np.sqrt(capacities[:-1] * capacities[1:])
     rates, modes = eigh_tridiagonal(diagonal, beside)
-    return rates, modes, links[0] / np.sqrt(capacities[0]) * modes[0]
+    return np.asarray(rates, dtype=np.float64), np.asarray(modes, dtype=np.float64)
 
 
 def _weights(rate: float) -> tuple[float, float, float]:
     """Of a mode at an hour: that of the hour before, and of what drives it then and now."""
     length = rate * _HOUR
-    decay = float(np.exp(-length))
     whole = -float(np.expm1(-length)) / rate
     # Of a straight line from nothing to one.
-    if length < 1e-5:
-        rising = 0.5 * _HOUR * (1.0 - length / 3.0)
-    else:
-        rising = (1.0 - whole / _HOUR) / rate
-    return decay, whole - rising, rising
+    rising = 0.5 * _HOUR * (1.0 - length / 3.0) if length < 1e-5 else (1.0 - whole / _HOUR) / rate
+    return float(np.exp(-length)), whole - rising, rising
 
 
 def _followed(rate: float, driving: Array, first: float) -> Array:
@@ -100,16 +100,18 @@ def _followed(rate: float, driving: Array, first: float) -> Array:
     return np.asarray(lfilter([1.0], [1.0, -decay], change))
 
 
-def _periodic(rates: Array, driven: Array, year: Array) -> Array:
-    """Modes at the beginning of a year that repeats."""
-    ends = [float(_followed(float(rate), share * year, 0.0)[-1]) for rate, share in zip(rates, driven, strict=True)]
+def _periodic(rates: Array, driven: Array, excess: Array) -> Array:
+    """Modes at the first hour of air whose first year repeats."""
+    year = np.append(excess[:YEAR_HOURS], excess[0])
+    modes = zip(rates, driven, strict=True)
+    ends = np.array([_followed(float(rate), share * year, 0.0)[-1] for rate, share in modes])
     # What a year leaves of a mode is exp(-rate year).
-    return np.array(ends) / -np.expm1(-rates * _HOUR * (len(year) - 1))
+    return np.asarray(ends / -np.expm1(-rates * _HOUR * (len(year) - 1)))
 
 
 def _swung(rates: Array, driven: Array, before: tuple[float, float, float], day: float) -> Array:
     """Modes on a day after many years of ``mean - amplitude cos(2 pi (day - coldest)/365)``."""
     mean, amplitude, coldest = before
-    speed = 2.0 * np.pi / (_YEAR_DAYS * 86400.0)
-    wave = np.exp(1j * speed * 86400.0 * (day - coldest))
+    speed = 2.0 * np.pi / (365.0 * _DAY)
+    wave = np.exp(1j * speed * _DAY * (day - coldest))
     return np.asarray(driven * (mean / rates - amplitude * np.real(wave / (rates + 1j * speed))))

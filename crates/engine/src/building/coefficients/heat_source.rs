@@ -75,17 +75,17 @@ impl<S: Real> Temperature<S> {
 }
 
 impl<S: Real> HeatSource<S> {
-    /// The heat that the outdoor air lets into the soil behind a wall.
-    pub(crate) fn of_soil(plan: &Plan, (surface, soil): (usize, &Soil)) -> Self {
-        let wall = &plan.walls[surface];
-        Self {
+    /// The heat by the outdoor air into the two innermost cells of the soil behind a wall.
+    pub(crate) fn of_soil(plan: &Plan, (surface, soil): (usize, &Soil)) -> [Self; 2] {
+        let innermost = plan.walls[surface].first_cell + soil.capacities.len() - 1;
+        [0, 1].map(|next| Self {
             wall: surface,
-            cell: wall.first_cell + wall.soil - 1,
-            driven: (S::one(), Schedule::new(Some(soil.heat))),
+            cell: innermost - next,
+            driven: (S::one(), Schedule::new(Some(soil.heat[next]))),
             water: None,
             thermostat: None,
             control: None,
-        }
+        })
     }
 
     pub(crate) fn new(

@@ -90,7 +90,8 @@ impl<S: Real> Coefficients<S> {
         let heat_sources = heat_sources.map(|source| HeatSource::new(plan, source, &values, &walls));
         let surfaces_described = description.surfaces.iter().enumerate();
         let soil = surfaces_described.filter_map(|(index, surface)| Some((index, surface.soil.as_ref()?)));
-        let heat_sources = heat_sources.chain(soil.map(|soil| HeatSource::of_soil(plan, soil))).collect();
+        let heat_sources =
+            heat_sources.chain(soil.flat_map(|soil| HeatSource::of_soil(plan, soil))).collect();
         Self {
             heat_sources,
             humidity,

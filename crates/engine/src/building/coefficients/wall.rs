@@ -111,10 +111,8 @@ fn soil_cells<S: Real>(soil: &Soil) -> impl Iterator<Item = Cell<S>> {
     let (last, half) = (soil.capacities.len() - 1, half_of_soil(soil));
     soil.capacities.iter().enumerate().map(move |(cell, &capacity)| {
         let conductivity = if cell == last { 0.5 / half } else { RESISTS_NOTHING };
-        let matter = Matter::Solid {
-            conductivity: S::constant(conductivity),
-            capacity: S::constant(capacity),
-        };
+        let matter =
+            Matter::Solid { conductivity: S::constant(conductivity), capacity: S::constant(capacity) };
         Cell { thickness: S::one(), matter }
     })
 }
@@ -155,9 +153,29 @@ fn resistance<S: Real>(plan: &Plan, material: usize, values: &Values<'_, S>) -> 
 
 #[cfg(test)]
 mod tests {
-    use crate::building::coefficients::{Coefficients, Matter};
+    use super::*;
+    use crate::building::coefficients::Coefficients;
     use crate::building::plan::Plan;
     use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+
+    /// Cells and links of soil have the resistances that are given, the innermost cell what lies between it and the construction.
+    #[test]
+    fn soil_behind_a_wall() {
+        let soil =
+            Soil { capacities: vec![4e5, 2e5, 1e5], resistances: vec![0.1, 0.4, 0.2, 0.03], heat: [0, 1] };
+        let cells: Vec<Cell<f64>> = soil_cells(&soil).collect();
+        let half = |cell: &Cell<f64>| match cell.matter {
+            Matter::Solid { conductivity, .. } => 0.5 * cell.thickness / conductivity,
+            Matter::Pcm(_) => panic!("soil"),
+        };
+        let links: Vec<f64> = soil_links(&soil).collect();
+        for (link, &resistance) in soil.resistances.iter().enumerate() {
+            let before = if link > 0 { half(&cells[link - 1]) } else { 0.0 };
+            let after = cells.get(link).map_or(0.0, half);
+            assert!((before + links[link] + after - resistance).abs() < 1e-11, "link {link}");
+        }
+        assert!((half(&cells[2]) - 0.03).abs() < 1e-15);
+    }
 
     /// 5 cm of board in two cells; the area of the window is not part of the south wall.
     #[test]

@@ -52,8 +52,9 @@ pub struct Soil {
     pub capacities: Vec<f64>,
     /// Resistances before, between and after the cells [m2 K/W].
     pub resistances: Vec<f64>,
-    /// Index into [`Description::channels`](super::Description::channels): heat that the outdoor air lets into the innermost cell [W/m2].
-    pub heat: usize,
+    /// Indices into [`Description::channels`](super::Description::channels): heat by the outdoor air into the innermost cell and the next one
+    /// [W/m2].
+    pub heat: [usize; 2],
 }
 
 /// The part of a window that is frame, or the part that is not.

@@ -97,11 +97,8 @@ fn profile<S: Real>(place: &At<'_, S>, surface: usize) -> Vec<(S, S)> {
     let at = |surface: SideId| state.surfaces[surface];
     let mut depth = S::zero();
     // Where soil is behind it, the construction begins at the soil.
-    let outer = if wall.soil > 0 {
-        interface_temperature(place, surface, 0)
-    } else {
-        at(SideId::outside(surface))
-    };
+    let outer =
+        if wall.soil > 0 { interface_temperature(place, surface, 0) } else { at(SideId::outside(surface)) };
     let mut points = vec![(depth, outer)];
     for (layer, &(start, end)) in wall.layer_cells.iter().enumerate() {
         if layer > 0 {
