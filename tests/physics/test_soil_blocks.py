@@ -12,7 +12,7 @@ from scipy.special import ellipk
 
 import mascarin as mc
 from mascarin.building import Building
-from mascarin.building.engine_input.soil import soil_of
+from mascarin.building.soil.courses import soil_of
 from mascarin.building.soil.finite_volumes import FiniteVolumes, SoilGeometry
 from mascarin.building.soil.ladder import SoilLadder, ladder_of
 from mascarin.errors import InputError

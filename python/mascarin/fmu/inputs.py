@@ -11,7 +11,7 @@ import numpy as np
 
 from mascarin.building.base.time_series import ColumnCourse
 from mascarin.building.engine_input.series_users import courses
-from mascarin.building.engine_input.soil import SoilCourse
+from mascarin.building.soil.courses import SoilCourse
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.checks.flow_balance import require_balanced_flows
 from mascarin.simulation.preparation.prepare import limits_of_columns

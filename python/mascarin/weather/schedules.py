@@ -23,8 +23,8 @@ from mascarin.weather.soil import of_soil
 
 if TYPE_CHECKING:
     from mascarin.building.base.time_series import ColumnCourse
-    from mascarin.building.engine_input.soil import SoilCourse
     from mascarin.building.parts.air.schedule import Schedule
+    from mascarin.building.soil.courses import SoilCourse
 
 # A step that ends at a switch ends before it. [s]
 _BEFORE: Final = 1e-3

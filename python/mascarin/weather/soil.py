@@ -12,7 +12,7 @@ from mascarin.tables.times import clock
 from mascarin.weather.forcing import channel_values
 
 if TYPE_CHECKING:
-    from mascarin.building.engine_input.soil import SoilCourse
+    from mascarin.building.soil.courses import SoilCourse
     from mascarin.tables.arrays import Array
     from mascarin.weather.climate import Climate
 
@@ -53,7 +53,10 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
     if before is not None:
         before = (before[0] - course.behind, *before[1:])
     heat = heat_of_outdoors(
-        course.ladder, air - course.behind, before, _day_of_year(climate, steps.first + float(hours[0]))
+        course.ladder,
+        np.asarray(air - course.behind, dtype=np.float64),
+        before,
+        _day_of_year(climate, steps.first + float(hours[0])),
     )
     middles = 0.5 * (steps.edges[:-1] + steps.edges[1:])
     return np.asarray(np.interp(middles, hours, heat[:, course.cell])[:, None])
@@ -73,9 +76,9 @@ def _hourly(climate: Climate, steps: Steps) -> tuple[Array, Array]:
     edges = _HOUR * np.arange(count + 1)
     hours = Steps(first, first + float(edges[-1]), edges, edges[1:, None], (1.0,))
     air = channel_values(climate.record, "air_temperature", hours)[:, 0]
-    known = np.isfinite(air)
-    if not known.all():
-        air = np.interp(edges[1:], edges[1:][known], air[known])
+    finite = np.isfinite(air)
+    if not finite.all():
+        air = np.interp(edges[1:], edges[1:][finite], air[finite])
     return np.asarray(edges[1:] + (first - steps.first)), np.asarray(air, dtype=np.float64)
 
 

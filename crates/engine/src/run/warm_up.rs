@@ -46,10 +46,7 @@ pub(super) fn warm_up<'a, S: Real>(
             action.take(stepper, &mut next, weather, options.dt, &mut unused)?;
             observe(stepper, &next, action)?;
         }
-        let change = soil.iter().fold(next.distance(state), |largest, &(cell, repetitions)| {
-            let change = (next.cells[cell] - state.cells[cell]).abs();
-            largest.max(change.scale(repetitions))
-        });
+        let change = largest_change(state, &next, &soil);
         let reached = active;
         change_left = S::select(active, change, change_left);
         active = active & !stepper.failed() & S::constant(tolerance).lt(change);
@@ -83,6 +80,13 @@ pub(super) fn warm_up<'a, S: Real>(
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
     Err(EngineError::WarmUpNotConverged { cycles: warmup.max_cycles, residual, tolerance })
+}
+
+/// The largest change between two repetitions [K]; that of slow cells of soil as what is left to change.
+fn largest_change<S: Real>(state: &State<S>, next: &State<S>, soil: &[(usize, f64)]) -> S {
+    soil.iter().fold(next.distance(state), |largest, &(cell, repetitions)| {
+        largest.max((next.cells[cell] - state.cells[cell]).abs().scale(repetitions))
+    })
 }
 
 /// Cells of soil that take more than one repetition of a period [s] to follow what is around them, and how many: a change is that part of what

@@ -98,19 +98,19 @@ def _inside_the_block(building: Description, name: str) -> Iterator[InitErrorDet
 
 
 def _apart(building: Description, on: dict[str, list[str]]) -> Iterator[InitErrorDetails]:
-    """Floors that are drawn must not lie over each other."""
-    drawn = {}
+    """Floors that are outlines must not lie over each other."""
+    outlines = {}
     for name, surfaces in on.items():
         vertices = building.surfaces[surfaces[0]].vertices if surfaces else None
         if vertices is not None:
             points = [tuple(float(value) for value in vertex) for vertex in vertices]
-            drawn[name] = [(min(p[k] for p in points), max(p[k] for p in points)) for k in (0, 1)]
-    for (one, first), (other, second) in combinations(drawn.items(), 2):
+            outlines[name] = [(min(p[k] for p in points), max(p[k] for p in points)) for k in (0, 1)]
+    for (block, first), (other, second) in combinations(outlines.items(), 2):
         common = [min(a[1], b[1]) - max(a[0], b[0]) for a, b in zip(first, second, strict=True)]
         if min(common) > _SAME:
             yield fault(
                 ("soil_blocks", other),
-                f"a floor that overlaps that of block '{one}' by {common[0]:g} m by {common[1]:g} m",
+                f"a floor that overlaps that of block '{block}' by {common[0]:g} m by {common[1]:g} m",
                 "floors beside each other",
                 "Correct the vertices; floors of one zone are one surface on one block.",
             )

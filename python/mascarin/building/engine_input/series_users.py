@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mascarin.building.base.time_series import ColumnCourse, temperature_course
-from mascarin.building.engine_input.soil import SoilCourse, soil_courses
+from mascarin.building.soil.courses import SoilCourse, soil_courses
 
 if TYPE_CHECKING:
     from mascarin.building.parts.air.schedule import Schedule

@@ -8,12 +8,12 @@ from typing import Any
 from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.air import driven
 from mascarin.building.engine_input.ids import Ids, Json, Positions, corners, deeper, fields_of
-from mascarin.building.engine_input.soil import behind_of, heat_of, soil_of
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.convection import Convection, Measured
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.envelope.surface import Side, Surface
+from mascarin.building.soil.courses import behind_of, heat_of, soil_of
 
 
 def describe_surface(

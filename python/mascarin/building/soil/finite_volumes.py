@@ -114,8 +114,8 @@ def _horizontal(block: SoilGeometry, size: float) -> tuple[Array, Array]:
     reach = block.horizontal[0]
     if 0.0 < reach < inner:
         edges.add(inner - reach)
-    size = FINE if block.layered else COARSE
-    return axis(sorted(edges), [inner, outer, inner - reach], size)
+    cells = FINE if block.layered else COARSE
+    return axis(sorted(edges), [inner, outer, inner - reach], cells)
 
 
 class FiniteVolumes:
@@ -228,12 +228,12 @@ class FiniteVolumes:
         columns: list[Any] = []
         values: list[Any] = []
         for direction, (conductance, both) in enumerate(links):
-            one, other = (part(number, direction)[both] for part in (_before, _after))
+            cell, other = (part(number, direction)[both] for part in (_before, _after))
             through = conductance[both]
-            rows += [one, other]
-            columns += [other, one]
+            rows += [cell, other]
+            columns += [other, cell]
             values += [-through, -through]
-            diagonal = diagonal + np.bincount(one, through, size) + np.bincount(other, through, size)
+            diagonal = diagonal + np.bincount(cell, through, size) + np.bincount(other, through, size)
         rows.append(np.arange(size))
         columns.append(np.arange(size))
         values.append(diagonal)
@@ -244,12 +244,12 @@ class FiniteVolumes:
         """``K`` times fields of temperatures. [W]"""
         return np.asarray(self.matrix @ fields)
 
-    def solve(self, known: Array, rate: float = 0.0, guess: Array | None = None) -> Array:
-        """Solve ``(K + rate C) T = known`` by conjugate gradients.
+    def solve(self, heat: Array, rate: float = 0.0, guess: Array | None = None) -> Array:
+        """Solve ``(K + rate C) T = heat`` by conjugate gradients.
 
         Parameters
         ----------
-        known : ndarray
+        heat : ndarray
             Heat into the cells. [W]
         rate : float
             Of the exponential that the solution follows; 0 is the steady state. [1/s]
@@ -266,7 +266,7 @@ class FiniteVolumes:
         Hestenes and Stiefel 1952, doi:10.6028/jres.049.044.
         """
         if self.block.layered:
-            return self._by_surface(known, rate, guess)
+            return self._by_surface(heat, rate, guess)
         inverse = self._separable.of_rate(rate)
         grid = np.zeros(self._shape)
 
@@ -277,15 +277,15 @@ class FiniteVolumes:
         def image(field: Array) -> Array:
             return self.image(field) + rate * self.capacities * field
 
-        return _conjugate(known, (image, eased), guess)
+        return _conjugate(heat, (image, eased), guess)
 
-    def _by_surface(self, known: Array, rate: float, guess: Array | None) -> Array:
+    def _by_surface(self, heat: Array, rate: float, guess: Array | None) -> Array:
         """Temperatures of a block that heat enters by its top alone, from those of the top."""
         shape = self._shape
         # A block that nothing holds but its top has no response to heat that never changes.
         rate = rate if self.block.deep else max(rate, _NEVER)
         touching = (self.inside + self.outside).reshape(shape)[:, :, 0]
-        entering = known.reshape(shape)[:, :, 0]
+        entering = heat.reshape(shape)[:, :, 0]
         response, resists, eased = self._separable.surface(rate, float(touching.sum()))
         first = None if guess is None else guess.reshape(shape)[:, :, 0]
 
@@ -296,12 +296,12 @@ class FiniteVolumes:
         return response(resists(top)).ravel()
 
 
-def _conjugate(known: Array, functions: tuple[Fields, Fields], guess: Array | None) -> Array:
+def _conjugate(heat: Array, functions: tuple[Fields, Fields], guess: Array | None) -> Array:
     """Solve a symmetric system, given as a function with one that eases it, by conjugate gradients."""
     image, eased = functions
-    enough = _RESIDUAL**2 * float(np.vdot(known, eased(known)))
-    solution = np.zeros_like(known) if guess is None else guess.copy()
-    residual = known - image(solution)
+    enough = _RESIDUAL**2 * float(np.vdot(heat, eased(heat)))
+    solution = np.zeros_like(heat) if guess is None else guess.copy()
+    residual = heat - image(solution)
     direction = better = eased(residual)
     square = float(np.vdot(residual, better))
     for _ in range(_MOST):

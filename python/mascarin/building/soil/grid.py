@@ -50,7 +50,7 @@ def graded(length: float, first: bool, last: bool, size: tuple[float, float] = F
     finest, growth = size
     count = max(2, math.ceil(math.log1p(length * (growth - 1.0) / finest) / math.log(growth)))
     widths = growth ** np.arange(count)
-    widths *= length / widths.sum()
+    widths = np.asarray(widths * (length / widths.sum()), dtype=np.float64)
     return widths if first else widths[::-1]
 
 
@@ -73,12 +73,12 @@ def axis(
     ndarray, ndarray
         Widths and middles. [m]
     """
-    places = [edges[0]]
+    ends = [edges[0]]
     for edge in edges[1:]:
-        if edge > places[-1] + _NOTHING:
-            places.append(edge)
-    near = [any(abs(place - other) <= _NOTHING for other in fine) for place in places]
-    spans = zip(places, places[1:], near, near[1:], strict=False)
-    parts = [graded(end - start, left, right, size) for start, end, left, right in spans]
+        if edge > ends[-1] + _NOTHING:
+            ends.append(edge)
+    is_fine = [any(abs(end - other) <= _NOTHING for other in fine) for end in ends]
+    spans = zip(ends, ends[1:], is_fine, is_fine[1:], strict=False)
+    parts = [graded(end - start, first, last, size) for start, end, first, last in spans]
     widths = np.concatenate(parts)
-    return widths, places[0] + np.cumsum(widths) - 0.5 * widths
+    return widths, ends[0] + np.cumsum(widths) - 0.5 * widths

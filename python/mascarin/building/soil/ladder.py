@@ -74,8 +74,8 @@ class SoilLadder:
         rounding would be in the energy balance. The steady state stays as it is.
         """
         resistances, capacities = list(self.resistances), list(self.capacities)
-        whole = sum(resistances)
-        while len(capacities) > 1 and resistances[-1] < _LAST * whole:
+        total = sum(resistances)
+        while len(capacities) > 1 and resistances[-1] < _LAST * total:
             capacities.pop()
             resistances[-2:] = [resistances[-2] + resistances[-1]]
         return tuple(resistances), tuple(capacities)
@@ -102,15 +102,15 @@ def ladder_of(block: SoilGeometry) -> SoilLadder:
     inner, outer = space.T @ volumes.inside, space.T @ volumes.outside
     diagonal, beside, vectors = _lanczos(0.5 * (conduction + conduction.T), inner)
     area = block.area
-    whole = float(volumes.inside.sum())
-    capacities, conductances = _ladder(diagonal, beside, (whole, float(np.linalg.norm(inner))))
+    conductance = float(volumes.inside.sum())
+    capacities, conductances = _ladder(diagonal, beside, (conductance, float(np.linalg.norm(inner))))
     # Neighbours of a row have opposite signs in the vectors.
     signs = (-1.0) ** np.arange(len(capacities))
     shares = signs * np.sqrt(capacities) * (vectors.T @ outer)
     resistances = area / conductances
     # Film and construction are no part of the soil.
     resistances[0] -= 1.0 / block.inside
-    loss = whole - float(volumes.inside @ steady)
+    loss = conductance - float(volumes.inside @ steady)
     return SoilLadder(
         tuple(resistances.tolist()),
         tuple((capacities / area).tolist()),
@@ -143,9 +143,9 @@ def _space(volumes: FiniteVolumes, rates: Array) -> tuple[Array, Array]:
         for _ in range(2):
             for other in fields:
                 field = field - float(other @ (capacities * field)) * other
-        rest = float(np.sqrt(capacities @ field**2))
-        if rest > _DEPENDENT * size:
-            fields.append(field / rest)
+        length = float(np.sqrt(capacities @ field**2))
+        if length > _DEPENDENT * size:
+            fields.append(field / length)
     return np.column_stack(fields), steady
 
 

@@ -83,10 +83,10 @@ def _modes(ladder: SoilLadder) -> tuple[Array, Array]:
 def _weights(rate: float) -> tuple[float, float, float]:
     """Of a mode at an hour: that of the hour before, and of what drives it then and now."""
     length = rate * _HOUR
-    whole = -float(np.expm1(-length)) / rate
+    constant = -float(np.expm1(-length)) / rate
     # Of a straight line from nothing to one.
-    rising = 0.5 * _HOUR * (1.0 - length / 3.0) if length < 1e-5 else (1.0 - whole / _HOUR) / rate
-    return float(np.exp(-length)), whole - rising, rising
+    rising = 0.5 * _HOUR * (1.0 - length / 3.0) if length < 1e-5 else (1.0 - constant / _HOUR) / rate
+    return float(np.exp(-length)), constant - rising, rising
 
 
 def _followed(rate: float, driving: Array, first: float) -> Array:

@@ -16,12 +16,12 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from mascarin.building.base.part import Part, fault, refuse
 from mascarin.building.base.time_series import temperature_course
-from mascarin.building.engine_input.soil import behind_of, soil_of
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance
 from mascarin.building.parts.materials.phases import phase
 from mascarin.building.parts.openings.blind import Blind
 from mascarin.building.parts.openings.glazing import GivenGap, Glazing, SimpleGlazing
+from mascarin.building.soil.courses import behind_of, soil_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.physics import imposed_temperature
 

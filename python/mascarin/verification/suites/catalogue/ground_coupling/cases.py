@@ -19,7 +19,7 @@ _AREA, _WALL, _INSIDE, _OUTDOORS = 144.0, 0.24, 30.0, 10.0
 _HEAT_CAPACITY: Final = 1490.0 * 1800.0
 _STRONG, _WEAK, _WINDY = 100.0, 7.95, 11.95
 #: Film that makes the ground as warm as the air. [W/(m2 K)]
-_GIVEN: Final = 1e5
+_SURFACE_AIR: Final = 1e5
 #: Of what the authors of VA114 calculated by the standard. [-]
 _OF_FORMULA: Final = 0.005
 _NUMERICAL: Final = ("TRNSYS", "FLUENT", "MATLAB")
@@ -122,7 +122,7 @@ class BlockCase:
 
 _BLOCKS: Final = {
     "GC30b": BlockCase(_STRONG, _STRONG),
-    "GC30c": BlockCase(_WEAK, _GIVEN, far=8.0),
+    "GC30c": BlockCase(_WEAK, _SURFACE_AIR, far=8.0),
     "GC60b": BlockCase(_WEAK, _STRONG),
     "GC65b": BlockCase(_WEAK, _WINDY),
     "GC40b": BlockCase(_STRONG, _STRONG, yearly=True),
@@ -131,9 +131,9 @@ _BLOCKS: Final = {
     "GC55b": BlockCase(_STRONG, _STRONG, depth=2.0, yearly=True),
     "GC70b": BlockCase(_WEAK, _WINDY, yearly=True),
     "GC80b": BlockCase(_STRONG, _STRONG, conductivity=0.5, yearly=True),
-    "GC40c": BlockCase(_WEAK, _GIVEN, far=8.0, yearly=True),
-    "GC45c": BlockCase(_WEAK, _GIVEN, size=(36.0, 4.0), far=8.0, yearly=True),
-    "GC80c": BlockCase(_WEAK, _GIVEN, far=8.0, conductivity=0.85, yearly=True),
+    "GC40c": BlockCase(_WEAK, _SURFACE_AIR, far=8.0, yearly=True),
+    "GC45c": BlockCase(_WEAK, _SURFACE_AIR, size=(36.0, 4.0), far=8.0, yearly=True),
+    "GC80c": BlockCase(_WEAK, _SURFACE_AIR, far=8.0, conductivity=0.85, yearly=True),
 }
 
 _CASES: Final = {
