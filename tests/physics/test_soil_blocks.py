@@ -227,21 +227,42 @@ def test_a_layered_floor_in_one_dimension() -> None:
     assert abs(one[-1] / other[-1] - 1.0) < 0.01
 
 
-def test_derivatives_and_members() -> None:
-    """Slopes by other parameters are those of two runs; members of an ensemble are runs."""
+@pytest.mark.parametrize(
+    ("path", "step", "tolerance"),
+    [
+        ("zones.room.infiltration.constant", 1e-3, 1e-5),
+        # The block is reduced again for another construction, whose derivative it does not have.
+        ("materials.concrete.conductivity", 1e-2, 0.05),
+    ],
+)
+def test_derivatives(path: str, step: float, tolerance: float) -> None:
+    """Slopes by other parameters are those of two runs."""
     here = building()
     weather = climate(10.0 + 5.0 * np.sin(2 * np.pi * np.arange(96) / 24.0))
     options: Any = {"step": "1h", "outputs": ["room.air_temperature"], "initial": 15.0}
-    path = "materials.concrete.conductivity"
     slopes = mc.jacobian(here, weather, vary=[path], **options)
+    value = here.parameter(path).value
     ends = [
-        mc.simulate(here, weather, parameters={path: value}, **options).to_dataframe().to_numpy()[-1, 0]
-        for value in (1.99, 2.01)
+        mc.simulate(here, weather, parameters={path: other}, **options).to_dataframe().to_numpy()[-1, 0]
+        for other in (value - step, value + step)
     ]
     derivatives = next(variable for variable in slopes.data_vars.values() if "parameter" in variable.dims)
     slope = float(derivatives.isel(parameter=0, time=-1).squeeze())
-    # The block keeps the construction that it was reduced with: a run with another value reduces it again.
-    assert slope == pytest.approx((ends[1] - ends[0]) / 0.02, rel=0.05, abs=1e-4)
+    assert slope == pytest.approx((ends[1] - ends[0]) / (2.0 * step), rel=tolerance, abs=1e-4)
+
+
+def test_members_are_runs() -> None:
+    """Eight members in lanes have the air of a run each."""
+    here = building()
+    weather = climate(10.0 + 5.0 * np.sin(2 * np.pi * np.arange(48) / 24.0))
+    options: Any = {"step": "1h", "outputs": ["room.air_temperature"], "initial": 15.0}
+    path = "zones.room.infiltration.constant"
+    values = np.linspace(0.2, 1.6, 8)
+    members = mc.sweep(here, weather, {path: values}, **options)
+    air = next(variable for variable in members.data_vars.values() if "time" in variable.dims)
+    for value, member in zip(values, np.asarray(air).reshape(-1, air.sizes["time"]), strict=True):
+        alone = mc.simulate(here, weather, parameters={path: float(value)}, **options)
+        assert member[-1] == pytest.approx(alone.to_dataframe().to_numpy()[-1, 0], abs=1e-9)
 
 
 @pytest.mark.parametrize(

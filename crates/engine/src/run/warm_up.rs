@@ -19,6 +19,9 @@ use crate::weather::conditions::Weather;
 /// Least change of a temperature between two repetitions that is asked for [K]: in single precision, smaller ones are rounding.
 const LEAST: ByPrecision = ByPrecision { double: 0.0, single: 2e-3 };
 
+/// Repetitions by which a change of soil is multiplied at most: more would ask for what short periods never show.
+const SLOWEST: f64 = 200.0;
+
 /// Repeats the first period until every lane has converged. Gives the number of repetitions
 /// and the largest change in the last one [K].
 pub(super) fn warm_up<'a, S: Real>(
@@ -100,7 +103,7 @@ fn slow_soil(plan: &Plan, period: f64) -> Vec<(usize, f64)> {
             behind += resistance;
             let repetitions = capacity * behind / period;
             if repetitions > 1.0 {
-                slow.push((wall.first_cell + cell, repetitions));
+                slow.push((wall.first_cell + cell, repetitions.min(SLOWEST)));
             }
         }
     }

@@ -50,8 +50,8 @@ def graded(length: float, first: bool, last: bool, size: tuple[float, float] = F
     finest, growth = size
     count = max(2, math.ceil(math.log1p(length * (growth - 1.0) / finest) / math.log(growth)))
     widths = growth ** np.arange(count)
-    widths = np.asarray(widths * (length / widths.sum()), dtype=np.float64)
-    return widths if first else widths[::-1]
+    widths *= length / widths.sum()
+    return np.asarray(widths if first else widths[::-1], dtype=np.float64)
 
 
 def axis(
