@@ -1,4 +1,4 @@
-"""Random blocks of soil below a random building: strips, which are reduced in no time."""
+"""Random blocks of soil below a random building: most are strips, which are reduced in no time."""
 
 from __future__ import annotations
 
@@ -46,5 +46,14 @@ def add(draw: Draw, tree: Json) -> None:
         }
     if draw.chance(0.3):
         block |= {"inside_film": draw.number(1.0, 10.0), "outdoor_film": draw.number(5.0, 50.0)}
+    if draw.chance(0.3):
+        block["source"] = "soil survey"
+    surface = tree["surfaces"][draw.one(may)]
+    area = surface.get("area")
+    if isinstance(area, float | int) and area > 4.0 and draw.chance(0.25):
+        # Three dimensions take a second or two.
+        block.pop("basement_depth", None)
+        block["width"] = (area * draw.number(0.3, 1.0)) ** 0.5
+        block["length"] = area / block["width"]
     tree["soil_blocks"] = {"soil_below": block}
-    tree["surfaces"][draw.one(may)]["outside"] = {"soil": "soil_below"}
+    surface["outside"] = {"soil": "soil_below"}
