@@ -16,6 +16,7 @@ import random_heat_sources
 import random_laws
 import random_materials
 import random_shells
+import random_soil
 from mascarin.building import Building
 from mascarin.building.base.law_table import DIFFUSE, SKY
 from mascarin.building.base.part import Part
@@ -86,6 +87,7 @@ class _Maker:
         random_air.controlled_flows(tree)
         random_air.operative_set_points(tree)
         random_heat_sources.add(Draw(f"heat sources {seed}"), tree)
+        random_soil.add(Draw(f"soil {seed}"), tree)
         return tree
 
     def _site(self) -> Json:

@@ -379,6 +379,28 @@ HEAT_SOURCES: dict[str, Any] = {
 }
 
 
+#: A floor on a block of soil, by path.
+SOIL: dict[str, Any] = {
+    "soil_blocks": {
+        "below": {
+            "length": 3,
+            "width": 2,
+            "wall_thickness": 0.3,
+            "basement_depth": 0.3,
+            "conductivity": 1.5,
+            "heat_capacity": 2.5e6,
+            "inside_film": 4,
+            "outdoor_film": 20,
+            "far": 5,
+            "depth": 5,
+            "deep_temperature": 14,
+            "edge": {"position": "vertical", "extent": 0.8, "thickness": 0.08, "conductivity": 0.04},
+            "before": {"mean": 15, "amplitude": 8, "coldest_day": 20},
+        }
+    },
+    "surfaces.floor.outside": {"soil": "below"},
+}
+
 #: What a house has beside that: in zones by path, and other sections.
 IN_ZONES: dict[tuple[str, str], dict[str, Any]] = {
     ("room", "gains"): {"heater": {"column": "T_out", "radiative": 0.3}},
@@ -581,5 +603,5 @@ def everything() -> list[Building]:
             "zones.room.thermal_bridges": {"edge": edge},
         }
     )
-    further = [freedom, *imposed, converted, building.replace(HEAT_SOURCES)]
+    further = [freedom, *imposed, converted, building.replace(HEAT_SOURCES), building.replace(SOIL)]
     return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), *further, *melting]

@@ -118,6 +118,7 @@ from mascarin.building.parts.site import (
     SkyLaw,
     Wind,
 )
+from mascarin.building.parts.soil_block import OutdoorsBefore, SoilBlock, SoilEdge
 from mascarin.building.reading import load
 from mascarin.building.tables import parameter_table
 from mascarin.physics import moist_air
@@ -204,6 +205,7 @@ __all__ = [
     "NoWind",
     "Number",
     "Opening",
+    "OutdoorsBefore",
     "Output",
     "Pane",
     "PaneGlazing",
@@ -223,6 +225,8 @@ __all__ = [
     "SkyLaw",
     "SmoothStepLaw",
     "Soil",
+    "SoilBlock",
+    "SoilEdge",
     "Solid",
     "SorptionLaw",
     "SunShares",

@@ -11,6 +11,7 @@ import numpy as np
 
 from mascarin.building.base.time_series import ColumnCourse
 from mascarin.building.engine_input.series_users import courses
+from mascarin.building.soil.courses import SoilCourse
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.checks.flow_balance import require_balanced_flows
 from mascarin.simulation.preparation.prepare import limits_of_columns
@@ -97,6 +98,8 @@ def _tables(simulation: Simulation) -> list[Channel]:
         channels.append(Channel(f"columns.{column}", position, unit, low, high, f"measured column {column}"))
     taken = {channel.name for channel in channels}
     for position, (name, course) in enumerate(by_name.items(), start=first + len(columns)):
+        if isinstance(course, SoilCourse):
+            continue  # what the soil remembers of the weather is no input
         low, high = LIMITS_OF_COURSES[course.kind]
         if isinstance(course, ColumnCourse):
             short = f"columns.{' and '.join(course.columns)}"

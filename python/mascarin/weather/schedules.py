@@ -19,10 +19,12 @@ from mascarin.weather.climate import Climate
 from mascarin.weather.forcing import column_means, column_values, record_of
 from mascarin.weather.reading.measurements import Measurements
 from mascarin.weather.records.channels import TEMPERATURES, UNITS
+from mascarin.weather.soil import of_soil
 
 if TYPE_CHECKING:
     from mascarin.building.base.time_series import ColumnCourse
     from mascarin.building.parts.air.schedule import Schedule
+    from mascarin.building.soil.courses import SoilCourse
 
 # A step that ends at a switch ends before it. [s]
 _BEFORE: Final = 1e-3
@@ -64,7 +66,7 @@ class StraightPieces:
 
 def scheduled(
     climate: Climate,
-    schedules: Mapping[str, Schedule | ColumnCourse],
+    schedules: Mapping[str, Schedule | ColumnCourse | SoilCourse],
     timezone: tzinfo,
     start: object,
     end: object,
@@ -126,6 +128,8 @@ def scheduled(
 
     def values_of(name: str) -> Array:
         course = schedules[name]
+        if hasattr(course, "ladder"):
+            return of_soil(climate, cast("SoilCourse", course), steps)
         if not course.columns:
             # Only a schedule has no columns.
             pieces = pieces_of(cast("Schedule", course), timezone, steps.first, steps.last)

@@ -37,6 +37,7 @@ STRUCTURAL = {
     "continuity",
     "side",
     "control",
+    "heat",
 }
 
 

@@ -19,6 +19,8 @@ pub struct SurfacePlan {
     pub nonlinear: bool,
     /// Heat sources in it, and the cell that is the plane of each: of no thickness, between two layers.
     pub planes: Vec<(usize, usize)>,
+    /// Number of its first cells that are soil.
+    pub(crate) soil: usize,
     /// The panes of a window.
     pub glass: Option<GlassPlan>,
     /// Position in [`Plan::windows`](crate::building::plan::Plan::windows); none for a wall.
@@ -67,6 +69,15 @@ pub struct ZonePlan {
     pub windows: Vec<(usize, usize)>,
 }
 
+/// Layer of the cells of soil: none of the construction.
+pub(crate) const SOIL: usize = usize::MAX;
+
+/// Index of the first of the two heats by the outdoor air into the soil of a surface: those of all soil follow the heat sources.
+pub(crate) fn soil_source(description: &Description, surface: usize) -> usize {
+    let before = description.surfaces[..surface].iter().filter(|other| other.soil.is_some()).count();
+    description.heat_sources.len() + 2 * before
+}
+
 impl SurfacePlan {
     /// Lays out a construction in cells; `first_cell` is its place in the flat cell arrays.
     pub(crate) fn new(
@@ -77,10 +88,15 @@ impl SurfacePlan {
         if let Some(glazing) = &construction.glazing {
             return Self::of_glass(GlassPlan::new(glazing, construction.blind.as_ref()), first_cell);
         }
-        let mut cell_layers = Vec::new();
-        let mut link_layers = vec![Vec::new()];
+        let soil = description.surfaces[surface].soil.as_ref().map_or(0, |soil| soil.capacities.len());
+        let mut cell_layers = vec![SOIL; soil];
+        let mut link_layers = vec![Vec::new(); soil + 1];
         let mut layer_cells = Vec::new();
         let mut planes = Vec::new();
+        if soil > 0 {
+            let source = soil_source(description, surface);
+            planes.extend([(source, soil - 1), (source + 1, soil - 2)]);
+        }
         let mut nonlinear = false;
         for (index, layer) in construction.layers.iter().enumerate() {
             let start = cell_layers.len();
@@ -116,6 +132,7 @@ impl SurfacePlan {
             // What water takes and gives changes with its flow.
             nonlinear: nonlinear || !planes.is_empty(),
             planes,
+            soil,
             glass: None,
             window: None,
             thick: false,
@@ -131,6 +148,7 @@ impl SurfacePlan {
             layer_cells: Vec::new(),
             nonlinear: true,
             planes: Vec::new(),
+            soil: 0,
             glass: Some(glass),
             window: None,
             thick: false,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::formulas;
 use super::humidity::HumidityPlan;
 use super::ids::{BySide, SideId};
+use super::layout::SOIL;
 pub use super::layout::{SidePlan, SideRole, SurfacePlan, ZonePlan};
 use super::order::{Order, number_unknowns};
 use super::passages::Passage;
@@ -194,6 +195,9 @@ impl Plan {
         let surface = &self.description.surfaces[wall];
         let layers = &self.description.constructions[surface.construction].layers;
         let layer = self.walls[wall].cell_layers[cell];
+        if layer == SOIL {
+            return format!("surface {} (soil)", surface.name);
+        }
         match layers.get(layer) {
             Some(layer) => format!("surface {} (layer {})", surface.name, layer.name),
             None => format!("window {} (pane {})", surface.name, layer + 1),

@@ -226,7 +226,7 @@ walk!(Band { open, close } plain {});
 walk!(ChannelBand { band } plain { channel });
 
 walk!(Surface { area, openings, frame, cavity_height, tilt, azimuth, outside, inside }
-    plain { name, construction, vertices });
+    plain { name, construction, vertices, soil });
 walk!(FrameShare { fraction } plain { is_frame });
 walk!(Side { facing, convection, heat_flux, emissivity, absorptance, area_factor, sky_view, height, longwave }
     plain { irradiance, behind_obstacles, exposure, shaded_by, own_shades, outline });

@@ -4,6 +4,7 @@
 //! it with them, to no effect.
 
 use crate::balance::energy_balance::EnergyBalance;
+use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::run::action::Action;
@@ -52,6 +53,11 @@ impl<S: Real> Circle<S> {
     }
 }
 
+/// Repetitions by which a change of soil is multiplied at most: more would ask for what short periods never show.
+const SLOWEST: f64 = 200.0;
+/// Repetitions after which soil counts as all else does: a control that switches moves it a little, again and again.
+const SETTLING: usize = 50;
+
 /// Repeats the first period until every lane has converged. Gives the number of repetitions
 /// and the largest change in the last one [K].
 pub(super) fn warm_up<'a, S: Real>(
@@ -64,6 +70,7 @@ pub(super) fn warm_up<'a, S: Real>(
 ) -> Result<(usize, S), EngineError> {
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
     let tolerance = warmup.tolerance.max(LEAST.of::<S>());
+    let soil = slow_soil(stepper.model.plan, warmup.steps as f64 * options.dt);
     let mut active = S::Mask::splat(true);
     let mut change_left = S::zero();
     let mut known: Option<PeriodicStart<S>> = None;
@@ -81,7 +88,7 @@ pub(super) fn warm_up<'a, S: Real>(
             action.take(stepper, &mut next, weather, options.dt, &mut unused)?;
             observe(stepper, &next, action)?;
         }
-        let change = next.distance(state);
+        let change = largest_change(state, &next, if cycle <= SETTLING { &soil } else { &[] });
         let reached = active;
         change_left = S::select(active, change, change_left);
         active = active & !stepper.failed() & S::constant(tolerance).lt(change);
@@ -122,6 +129,31 @@ pub(super) fn warm_up<'a, S: Real>(
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
     Err(EngineError::WarmUpNotConverged { cycles, residual, tolerance })
+}
+
+/// The largest change between two repetitions [K]; that of slow cells of soil as what is left to change.
+fn largest_change<S: Real>(state: &State<S>, next: &State<S>, soil: &[(usize, f64)]) -> S {
+    soil.iter().fold(next.distance(state), |largest, &(cell, repetitions)| {
+        largest.max((next.cells[cell] - state.cells[cell]).abs().scale(repetitions))
+    })
+}
+
+/// Cells of soil that take more than one repetition of a period [s] to follow what is around them, and how many: a change is that part of what
+/// is left to change.
+fn slow_soil(plan: &Plan, period: f64) -> Vec<(usize, f64)> {
+    let mut slow = Vec::new();
+    for (wall, surface) in plan.walls.iter().zip(&plan.description.surfaces) {
+        let Some(soil) = &surface.soil else { continue };
+        let mut behind = 0.0;
+        for (cell, (capacity, resistance)) in soil.capacities.iter().zip(&soil.resistances).enumerate() {
+            behind += resistance;
+            let repetitions = capacity * behind / period;
+            if repetitions > 1.0 {
+                slow.push((wall.first_cell + cell, repetitions.min(SLOWEST)));
+            }
+        }
+    }
+    slow
 }
 
 /// Sets what guesses are made from.

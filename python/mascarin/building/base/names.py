@@ -34,7 +34,16 @@ Name = Annotated[str, AfterValidator(_name)]
 def known_names(description: Any) -> Iterator[None]:
     """Let the parts that are read inside refer to the sections of this description."""
     sections = {}
-    for section in ("materials", "constructions", "zones", "surfaces", "schedules", "glazings", "controls"):
+    for section in (
+        "materials",
+        "constructions",
+        "zones",
+        "surfaces",
+        "schedules",
+        "glazings",
+        "controls",
+        "soil_blocks",
+    ):
         named = description.get(section) if isinstance(description, Mapping) else None
         sections[section] = dict.fromkeys(map(str, named)) if isinstance(named, Mapping) else {}
     token = _names.set(sections)
@@ -64,4 +73,5 @@ ZoneName = Annotated[str, _reference("zones", "zone")]
 SurfaceName = Annotated[str, _reference("surfaces", "surface")]
 ScheduleName = Annotated[str, _reference("schedules", "schedule")]
 ControlName = Annotated[str, _reference("controls", "control")]
+SoilBlockName = Annotated[str, _reference("soil_blocks", "block of soil")]
 GlazingName = Annotated[str, _reference("glazings", "glazing")]

@@ -14,6 +14,7 @@ from mascarin.building.checks.derived_outputs import derived_faults
 from mascarin.building.checks.forced_convection import forced_convection_faults
 from mascarin.building.checks.formula_sides import formula_sides
 from mascarin.building.checks.humidity import humidity_faults
+from mascarin.building.checks.soil import soil_faults
 from mascarin.building.checks.windows import windows_lie_in_walls
 from mascarin.building.engine_input.series_users import schedule_uses
 from mascarin.building.parameters.parameter import parameters
@@ -60,6 +61,7 @@ def faults(building: Description) -> Faults:
     yield from _convection_suits_its_side(building)
     yield from _sensors_inside_walls(building)
     yield from _heat_sources_between_layers(building)
+    yield from soil_faults(building)
     yield from _columns_have_one_meaning(building)
     yield from _view_factors_sum_to_one(building)
     yield from _schedules_suit_their_use(building)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mascarin.building.base.time_series import ColumnCourse, temperature_course
+from mascarin.building.soil.courses import SoilCourse, soil_courses
 
 if TYPE_CHECKING:
     from mascarin.building.parts.air.schedule import Schedule
@@ -148,10 +149,11 @@ def _columns_of_heat_sources(building: Description) -> Iterator[tuple[ColumnCour
                 yield temperature_course(temperature.column), location
 
 
-def courses(building: Description) -> dict[str, Schedule | ColumnCourse]:
-    """Courses over time of a building by name: its used schedules, then those taken from columns directly."""
+def courses(building: Description) -> dict[str, Schedule | ColumnCourse | SoilCourse]:
+    """Courses over time of a building by name: used schedules, those from columns directly, those of soil."""
     used = {name for name, _, _ in schedule_uses(building)}
-    by_channel: dict[str, Schedule | ColumnCourse] = {
+    by_channel: dict[str, Schedule | ColumnCourse | SoilCourse] = {
         name: schedule for name, schedule in building.schedules.items() if name in used
     }
-    return by_channel | {course.name: course for course, _ in column_courses(building)}
+    by_channel |= {course.name: course for course, _ in column_courses(building)}
+    return by_channel | {course.name: course for course in soil_courses(building)}

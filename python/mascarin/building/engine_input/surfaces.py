@@ -13,6 +13,7 @@ from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.convection import Convection, Measured
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.envelope.surface import Side, Surface
+from mascarin.building.soil.courses import behind_of, heat_of, soil_of
 
 
 def describe_surface(
@@ -26,6 +27,7 @@ def describe_surface(
     """Describe a surface with its two sides."""
     zones = list(building.zones)
     return {
+        **_soil(building, name, channels[1]),
         "name": name,
         "construction": list(building.constructions).index(surface.construction),
         "area": ids("area"),
@@ -35,6 +37,21 @@ def describe_surface(
         "azimuth": ids("azimuth"),
         "outside": _side(surface.outside, zones, channels, deeper(ids, "outside")),
         "inside": _side(surface.inside, zones, channels, deeper(ids, "inside")),
+    }
+
+
+def _soil(building: Description, name: str, positions: Positions) -> Json:
+    """Soil behind a surface, from the outermost cell to the construction; nothing where there is none."""
+    soil = soil_of(building, name)
+    if soil is None:
+        return {}
+    resistances, capacities = soil.ladder.without_last
+    return {
+        "soil": {
+            "capacities": capacities[::-1],
+            "resistances": resistances[::-1],
+            "heat": [positions[heat_of(soil.block, cell)] for cell in (0, 1)],
+        }
     }
 
 
@@ -65,6 +82,8 @@ def _facing(side: Side, zones: list[str], columns: list[str], positions: Positio
         return {"kind": "measured", "channel": columns.index(side.measured)}
     if side.scheduled is not None:
         return {"kind": "measured", "channel": columns.index(schedule_channel(side.scheduled))}
+    if side.soil is not None:
+        return {"kind": "measured", "channel": positions[behind_of(side.soil)]}
     if side.ground is not None:
         return {"kind": "imposed", "law": {"kind": "ground"} | fields_of(side.ground, ids, "ground.")}
     if side.imposed is not None:

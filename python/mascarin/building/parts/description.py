@@ -23,6 +23,7 @@ from mascarin.building.parts.openings.glazing import Glazing
 from mascarin.building.parts.openings.window import Shade, Window
 from mascarin.building.parts.posterior import Posterior
 from mascarin.building.parts.site import Site
+from mascarin.building.parts.soil_block import SoilBlock
 from mascarin.building.parts.weather import Weather
 from mascarin.building.parts.zone_surfaces import Connections
 
@@ -69,6 +70,9 @@ class Description(Part):
     )
     heat_sources: dict[Name, HeatSource] = Field(
         default_factory=dict, description="Heat released between layers of surfaces, by name"
+    )
+    soil_blocks: dict[Name, SoilBlock] = Field(
+        default_factory=dict, description="Soil beneath and around floors and basements, by name"
     )
     sensors: dict[Name, WallSensor] = Field(
         default_factory=dict, description="Thermometers inside walls by name"

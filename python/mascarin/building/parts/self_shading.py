@@ -207,7 +207,9 @@ def undrawn(building: Description) -> list[str]:
 
 def _can_obstruct(surface: Surface) -> bool:
     between_zones = all(side.zone is not None for side in surface.sides)
-    return not between_zones and all(side.ground is None and side.imposed is None for side in surface.sides)
+    return not between_zones and all(
+        side.ground is None and side.soil is None and side.imposed is None for side in surface.sides
+    )
 
 
 def _outdoors(building: Description, polygons: dict[str, Polygon]) -> Iterator[tuple[SideName, Polygon]]:

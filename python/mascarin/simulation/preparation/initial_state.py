@@ -21,6 +21,7 @@ from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resi
 from mascarin.building.parts.materials.phases import phase
 from mascarin.building.parts.openings.blind import Blind
 from mascarin.building.parts.openings.glazing import GivenGap, Glazing, SimpleGlazing
+from mascarin.building.soil.courses import behind_of, soil_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.physics import imposed_temperature
 
@@ -166,13 +167,16 @@ class InitialWall:
     layers : tuple of (float, float)
         Thickness, 0 where it has none, and resistance. [m, m2 K/W]
     cells : tuple of float
-        Positions of the finite volumes. [m2 K/W]
+        Positions of the finite volumes; those of soil are before the outside. [m2 K/W]
+    soil : float
+        Resistance of the soil behind the outside. [m2 K/W]
     """
 
     name: str
     sides: tuple[Side, Side]
     layers: tuple[tuple[float, float], ...]
     cells: tuple[float, ...]
+    soil: float = 0.0
     edges: tuple[float, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -224,7 +228,9 @@ def walls(building: Building, nodes: Mapping[tuple[str, str], int]) -> list[Init
 def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int]) -> InitialWall:
     surface = building.surfaces[name]
     layers: list[tuple[float, float]] = []
-    cells: list[float] = []
+    soil = soil_of(building, name)
+    behind = [] if soil is None else list(accumulate(soil.ladder.without_last[0]))
+    cells = [-position for position in reversed(behind[:-1])]
     # The plane of heat sources is a cell of no thickness.
     planes = {source.after for source in building.heat_sources.values() if source.surface == name}
     for layer in building.constructions[surface.construction].layers:
@@ -242,7 +248,7 @@ def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int])
             layers.append((float(layer.thickness), resistance))
         if layer.name in planes:
             cells.append(before + resistance)
-    return InitialWall(name, surface.sides, tuple(layers), tuple(cells))
+    return InitialWall(name, surface.sides, tuple(layers), tuple(cells), behind[-1] if behind else 0.0)
 
 
 def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> InitialWall:
@@ -376,7 +382,7 @@ def profile(
         points = _points(wall, start.points.get(wall.name, ()) if wall.name else (), air, ambient)
         positions, values = zip(*points, strict=True)
         cells += np.interp(wall.cells, positions, values).tolist()
-        faces += np.interp([0.0, wall.whole], positions, values).tolist()
+        faces += np.interp([-wall.soil, wall.whole], positions, values).tolist()
     return InitialTemperatures(
         tuple(cells), tuple(faces), tuple(air.values()), start.words + _advice(building)
     )
@@ -401,8 +407,8 @@ def _points(
     """Positions and temperatures between which a wall is interpolated, from outside to inside."""
     points = _merged(inside)
     outer, inner = (_beside(side, air, ambient) for side in wall.sides)
-    if outer is not None and not (points and points[0][0] < _SAME):
-        points.insert(0, (-outer[0], outer[1]))
+    if outer is not None and not (points and points[0][0] < _SAME and not wall.soil):
+        points.insert(0, (-outer[0] - wall.soil, outer[1]))
     if inner is not None and not (points and points[-1][0] > wall.whole - _SAME):
         points.append((wall.whole + inner[0], inner[1]))
     # Between two adiabatic sides only the air of the building is known.
@@ -430,6 +436,8 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
     film = FILMS[1] if gives_film else 0.0
     if side.zone is not None:
         return film, air[side.zone]
+    if side.soil is not None:
+        return film, ambient.columns[schedule_channel(behind_of(side.soil))]
     if side.ground is not None:
         ground = {name: float(getattr(side.ground, name) or 0.0) for name in type(side.ground).model_fields}
         return film, imposed_temperature("ground", ground, ambient.day, ambient.outdoors)

@@ -1,7 +1,7 @@
 //! Heat sources in walls: their numbers.
 
 use crate::building::plan::Plan;
-use crate::input::description::{self, HeatExchange, HeatingMeans, SetPoint};
+use crate::input::description::{self, HeatExchange, HeatingMeans, SetPoint, Soil};
 use crate::input::forcing::{CLIMATE_CHANNELS, Schedule};
 use crate::input::values::Values;
 use crate::number::real::Real;
@@ -75,6 +75,19 @@ impl<S: Real> Temperature<S> {
 }
 
 impl<S: Real> HeatSource<S> {
+    /// The heat by the outdoor air into the two innermost cells of the soil behind a wall.
+    pub(crate) fn of_soil(plan: &Plan, (surface, soil): (usize, &Soil)) -> [Self; 2] {
+        let innermost = plan.walls[surface].first_cell + soil.capacities.len() - 1;
+        [0, 1].map(|next| Self {
+            wall: surface,
+            cell: innermost - next,
+            driven: (S::one(), Schedule::new(Some(soil.heat[next]))),
+            water: None,
+            thermostat: None,
+            control: None,
+        })
+    }
+
     pub(crate) fn new(
         plan: &Plan,
         (index, source): (usize, &description::HeatSource),

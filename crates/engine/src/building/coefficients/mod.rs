@@ -87,8 +87,11 @@ impl<S: Real> Coefficients<S> {
         let paths = description.air_paths.iter().map(|path| Path::new(path, &values, &air)).collect();
         let humidity = HumidityCoefficients::new(plan, &values, &walls, &zones);
         let heat_sources = description.heat_sources.iter().enumerate();
+        let heat_sources = heat_sources.map(|source| HeatSource::new(plan, source, &values, &walls));
+        let surfaces_described = description.surfaces.iter().enumerate();
+        let soil = surfaces_described.filter_map(|(index, surface)| Some((index, surface.soil.as_ref()?)));
         let heat_sources =
-            heat_sources.map(|source| HeatSource::new(plan, source, &values, &walls)).collect();
+            heat_sources.chain(soil.flat_map(|soil| HeatSource::of_soil(plan, soil))).collect();
         Self {
             heat_sources,
             humidity,

@@ -4,7 +4,7 @@ use crate::building::cell::{Cell, Matter};
 use crate::building::glazing::{Glass, GlassWall, rated_resistance};
 use crate::building::layout::SurfacePlan;
 use crate::building::plan::Plan;
-use crate::input::description::{Material, Surface};
+use crate::input::description::{Material, Soil, Surface};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::formula::function::Function;
@@ -12,6 +12,8 @@ use crate::physics::pcm::PcmCoefficients;
 
 /// Both surface resistances of a rated U value [m2 K/W] (ISO 6946:2017, table 7: 0.13 inside, 0.04 outside).
 const RATED_SURFACE_RESISTANCES: f64 = 0.17;
+/// Conductivity of cells of soil, whose resistance is all in the links between them [W/(m K)].
+const RESISTS_NOTHING: f64 = 1e12;
 
 /// A wall.
 #[derive(Debug, Clone)]
@@ -51,6 +53,8 @@ impl<S: Real> WallCoefficients<S> {
         }
         let mut pcm = Vec::new();
         let mut cells = Vec::with_capacity(wall.len());
+        let soil = described.soil.as_ref();
+        cells.extend(soil.iter().flat_map(|soil| soil_cells::<S>(soil)));
         let layer_resistance: Vec<S> =
             construction.layers.iter().map(|layer| resistance(plan, layer.material, values)).collect();
         for (layer, &(start, end)) in construction.layers.iter().zip(&wall.layer_cells) {
@@ -84,11 +88,40 @@ impl<S: Real> WallCoefficients<S> {
             .link_layers
             .iter()
             .map(|layers| layers.iter().fold(S::zero(), |sum, &layer| sum + layer_resistance[layer]));
-        let extra = extra.collect();
-        let massless = wall.link_layers.iter().map(|layers| !layers.is_empty()).collect();
+        let mut extra: Vec<S> = extra.collect();
+        for (extra, resistance) in extra.iter_mut().zip(soil.iter().flat_map(|soil| soil_links(soil))) {
+            *extra += S::constant(resistance);
+        }
+        let links = wall.link_layers.iter().enumerate();
+        let massless = links.map(|(link, layers)| link < wall.soil || !layers.is_empty()).collect();
         let planes = !wall.planes.is_empty();
         Self { area, extra, massless, cells, pcm, layer_resistance, planes, glass: None }
     }
+}
+
+/// Half of the resistance of the cells of soil, which is none but that of the innermost one: its inner half is all that lies between it
+/// and the construction, as far as the link behind it is as large [m2 K/W].
+fn half_of_soil(soil: &Soil) -> f64 {
+    let cells = soil.capacities.len();
+    soil.resistances[cells].min(0.5 * soil.resistances[cells - 1])
+}
+
+/// Cells of soil: of one metre, with the heat capacity of the whole cell.
+fn soil_cells<S: Real>(soil: &Soil) -> impl Iterator<Item = Cell<S>> {
+    let (last, half) = (soil.capacities.len() - 1, half_of_soil(soil));
+    soil.capacities.iter().enumerate().map(move |(cell, &capacity)| {
+        let conductivity = if cell == last { 0.5 / half } else { RESISTS_NOTHING };
+        let matter =
+            Matter::Solid { conductivity: S::constant(conductivity), capacity: S::constant(capacity) };
+        Cell { thickness: S::one(), matter }
+    })
+}
+
+/// Resistances of the links of soil beside those of its cells [m2 K/W].
+fn soil_links(soil: &Soil) -> impl Iterator<Item = f64> {
+    let (cells, half) = (soil.capacities.len(), half_of_soil(soil));
+    let within = move |link: usize| if link + 1 < cells { 0.0 } else { half };
+    soil.resistances.iter().enumerate().map(move |(link, &resistance)| resistance - within(link))
 }
 
 /// A plane between two layers in which heat is released: it stores none and resists none.
@@ -120,9 +153,29 @@ fn resistance<S: Real>(plan: &Plan, material: usize, values: &Values<'_, S>) -> 
 
 #[cfg(test)]
 mod tests {
-    use crate::building::coefficients::{Coefficients, Matter};
+    use super::*;
+    use crate::building::coefficients::Coefficients;
     use crate::building::plan::Plan;
     use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+
+    /// Cells and links of soil have the resistances that are given, the innermost cell what lies between it and the construction.
+    #[test]
+    fn soil_behind_a_wall() {
+        let soil =
+            Soil { capacities: vec![4e5, 2e5, 1e5], resistances: vec![0.1, 0.4, 0.2, 0.03], heat: [0, 1] };
+        let cells: Vec<Cell<f64>> = soil_cells(&soil).collect();
+        let half = |cell: &Cell<f64>| match cell.matter {
+            Matter::Solid { conductivity, .. } => 0.5 * cell.thickness / conductivity,
+            Matter::Pcm(_) => panic!("soil"),
+        };
+        let links: Vec<f64> = soil_links(&soil).collect();
+        for (link, &resistance) in soil.resistances.iter().enumerate() {
+            let before = if link > 0 { half(&cells[link - 1]) } else { 0.0 };
+            let after = cells.get(link).map_or(0.0, half);
+            assert!((before + links[link] + after - resistance).abs() < 1e-11, "link {link}");
+        }
+        assert!((half(&cells[2]) - 0.03).abs() < 1e-15);
+    }
 
     /// 5 cm of board in two cells; the area of the window is not part of the south wall.
     #[test]

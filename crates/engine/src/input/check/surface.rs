@@ -3,8 +3,8 @@
 use super::numbers::check_polygon;
 use super::{Checked, check_index, check_schedule, refuse};
 use crate::input::description::{
-    Convection, Description, Facing, HeatSource, HeatingMeans, OutdoorLongwave, SetPoint, Side, Surface,
-    ZoneLongwave,
+    Convection, Description, Facing, HeatSource, HeatingMeans, OutdoorLongwave, SetPoint, Side, Soil,
+    Surface, ZoneLongwave,
 };
 
 /// References of a heat source, and a plane between two layers.
@@ -45,6 +45,9 @@ pub(super) fn check_surface(description: &Description, wall: &Surface) -> Checke
         check_polygon(&place, &wall.vertices)?;
     }
     let glazed = description.constructions[wall.construction].glazing.is_some();
+    if let Some(soil) = &wall.soil {
+        check_soil(description, &place, wall, soil)?;
+    }
     for (name, side) in [("outside", &wall.outside), ("inside", &wall.inside)] {
         check_side(description, &format!("{place}, {name}"), side, glazed)?;
     }
@@ -59,6 +62,32 @@ pub(super) fn check_surface(description: &Description, wall: &Surface) -> Checke
             place,
             "a window elsewhere",
             "a window between outdoors (outside) and a zone (inside), or between two zones",
+        );
+    }
+    Ok(())
+}
+
+/// Cells with a resistance on both sides, behind a construction of layers whose outer side has a given temperature.
+fn check_soil(description: &Description, place: &str, wall: &Surface, soil: &Soil) -> Checked {
+    for channel in soil.heat {
+        check_index(place, "channel of the soil", channel, description.channels.len())?;
+    }
+    let (cells, links) = (soil.capacities.len(), soil.resistances.len());
+    if cells < 2 || links != cells + 1 {
+        let found = format_args!("soil of {cells} cells and {links} resistances").to_string();
+        return refuse(place, found, "two cells or more, and one resistance more than these");
+    }
+    let numbers = soil.capacities.iter().chain(&soil.resistances);
+    if let Some(number) = numbers.into_iter().find(|number| !(number.is_finite() && **number > 0.0)) {
+        return refuse(place, format_args!("{number} in the soil"), "numbers above 0");
+    }
+    let glazed = description.constructions[wall.construction].glazing.is_some();
+    let held = matches!(wall.outside.facing, Facing::Measured { .. }) && wall.outside.convection.is_none();
+    if glazed || !held {
+        return refuse(
+            place,
+            "soil behind something else",
+            "layers whose outer side has a measured temperature",
         );
     }
     Ok(())

@@ -43,7 +43,7 @@ pub use parameter::{ParamId, Parameter};
 pub use phase_change::{MeltingCurve, PcmLaw, TablePoints, Tail};
 pub use published_law::PublishedLaw;
 pub use site::{Clouds, Site, Sky, WindProfile};
-pub use surface::{Exposure, Facing, FrameShare, HeatFlux, OutdoorLongwave, Sensor, Side, Surface};
+pub use surface::{Exposure, Facing, FrameShare, HeatFlux, OutdoorLongwave, Sensor, Side, Soil, Surface};
 pub use vent::{Band, ChannelBand, Vent, VentControl, WindOnVent, WindPressure};
 pub use zone::{
     Gain, IdealLoad, Infiltration, Mixing, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave, ZoneSun,

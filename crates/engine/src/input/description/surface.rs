@@ -33,11 +33,28 @@ pub struct Surface {
     /// Azimuth of the outside normal [deg], clockwise from north.
     pub azimuth: ParamId,
 
-    /// The side that the construction's first layer touches.
+    /// The side that the construction's first layer touches; with soil, that the outermost cell of the soil touches.
     pub outside: Side,
+
+    /// Soil behind the construction's first layer. None: none.
+    #[serde(default)]
+    pub soil: Option<Soil>,
 
     /// The side that the construction's last layer touches.
     pub inside: Side,
+}
+
+/// A block of soil as a row of cells, outside to inside: numbers of its structure, which are no parameters.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Soil {
+    /// Heat capacities of the cells [J/(m2 K)].
+    pub capacities: Vec<f64>,
+    /// Resistances before, between and after the cells [m2 K/W].
+    pub resistances: Vec<f64>,
+    /// Indices into [`Description::channels`](super::Description::channels): heat by the outdoor air into the innermost cell and the next one
+    /// [W/m2].
+    pub heat: [usize; 2],
 }
 
 /// The part of a window that is frame, or the part that is not.

@@ -69,7 +69,7 @@ pub(super) fn interface_temperature<S: Real>(at: &At<'_, S>, surface: usize, int
     let At { plan, step, state } = *at;
     let (wall, numbers) = (&plan.walls[surface], &step.model.coefficients.walls[surface]);
     // The link that holds the interface follows the cells of all layers before it.
-    let link = wall.layer_cells[interface - 1].1;
+    let link = if interface == 0 { wall.soil } else { wall.layer_cells[interface - 1].1 };
     let flux = step.link_flux(state, surface, link);
     let (mut temperature, mut resistance) = if link == 0 {
         (state.surfaces[SideId::outside(surface)], S::zero())
@@ -96,7 +96,10 @@ fn profile<S: Real>(place: &At<'_, S>, surface: usize) -> Vec<(S, S)> {
     let (wall, numbers) = (&plan.walls[surface], &step.model.coefficients.walls[surface]);
     let at = |surface: SideId| state.surfaces[surface];
     let mut depth = S::zero();
-    let mut points = vec![(depth, at(SideId::outside(surface)))];
+    // Where soil is behind it, the construction begins at the soil.
+    let outer =
+        if wall.soil > 0 { interface_temperature(place, surface, 0) } else { at(SideId::outside(surface)) };
+    let mut points = vec![(depth, outer)];
     for (layer, &(start, end)) in wall.layer_cells.iter().enumerate() {
         if layer > 0 {
             points.push((depth, interface_temperature(place, surface, layer)));

@@ -239,6 +239,7 @@ impl Builder {
             openings: Vec::new(),
             frame: None,
             cavity_height: None,
+            soil: None,
             vertices: Vec::new(),
             tilt: self.number(&format!("surfaces.{name}.tilt"), place[1]),
             azimuth: self.number(&format!("surfaces.{name}.azimuth"), place[2]),

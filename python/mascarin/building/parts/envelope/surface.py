@@ -17,6 +17,7 @@ from mascarin.building.base.names import (
     MaterialName,
     Name,
     ScheduleName,
+    SoilBlockName,
     SurfaceName,
     ZoneName,
 )
@@ -27,7 +28,7 @@ from mascarin.building.parts.envelope.convection import CONVECTION, Convection, 
 from mascarin.building.parts.envelope.imposed import GROUND, ImposedTemperature
 from mascarin.building.parts.envelope.measured_values import Driven
 
-FACINGS = ("outdoors", "zone", "ground", "imposed", "measured", "scheduled", "heat_flux", "adiabatic")
+FACINGS = ("outdoors", "zone", "ground", "soil", "imposed", "measured", "scheduled", "heat_flux", "adiabatic")
 
 #: Quantities of the ground, as the engine has them.
 _MEAN, _AMPLITUDE, _COLDEST_DAY = (number.quantity for number in GROUND.numbers)
@@ -240,6 +241,9 @@ class Side(Part):
     outdoors: Literal[True] | None = Field(None, description="Faces the weather: write true")
     zone: ZoneName | None = Field(None, description="Faces the air of this zone")
     ground: Ground | None = Field(None, description="Touches ground of this temperature")
+    soil: SoilBlockName | None = Field(
+        None, description="Touches this block of soil, which lies in two or three dimensions around it"
+    )
     imposed: ImposedTemperature | None = Field(
         None,
         description="Touches something whose temperature, heat or coefficient follows a law, such as soil at "
@@ -305,6 +309,8 @@ class Side(Part):
             return f"schedule {self.scheduled}"
         if self.imposed is not None:
             return self.imposed.row.title
+        if self.soil is not None:
+            return f"soil {self.soil}"
         return self.zone or self.faces
 
     def in_short(self) -> str:
@@ -357,9 +363,10 @@ class Side(Part):
 
     def _inactive(self) -> list[InitErrorDetails]:
         """What is given and has no effect here."""
-        air = self.convection is not None and self.adiabatic is None and self.heat_flux is None
+        touches = self.adiabatic is not None or self.heat_flux is not None or self.soil is not None
+        air = self.convection is not None and not touches
         acts = {
-            "convection": self.adiabatic is None and self.heat_flux is None,
+            "convection": not touches,
             "area_factor": air,
             "emissivity": bool(self.outdoors or self.zone is not None),
             "absorptance": self.sunlit or self.zone is not None or self.irradiance is not None,

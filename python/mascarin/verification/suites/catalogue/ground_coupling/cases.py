@@ -1,4 +1,4 @@
-"""A room held at 30 degC on a slab of 144 m2 by ISO 13370, beside outdoor air of 10 degC."""
+"""A room held at 30 degC on a slab, by ISO 13370 and on a block of soil, beside outdoor air of 10 degC."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ _AREA, _WALL, _INSIDE, _OUTDOORS = 144.0, 0.24, 30.0, 10.0
 #: Heat capacity of the soil by volume [J/(m3 K)]: 1490 kg/m3 and 1800 J/(kg K).
 _HEAT_CAPACITY: Final = 1490.0 * 1800.0
 _STRONG, _WEAK, _WINDY = 100.0, 7.95, 11.95
+#: Film that makes the ground as warm as the air. [W/(m2 K)]
+_SURFACE_AIR: Final = 1e5
 #: Of what the authors of VA114 calculated by the standard. [-]
 _OF_FORMULA: Final = 0.005
 _NUMERICAL: Final = ("TRNSYS", "FLUENT", "MATLAB")
@@ -67,6 +69,73 @@ class Case:
         }
 
 
+@dataclass(frozen=True)
+class BlockCase:
+    """A case on a block of soil.
+
+    Parameters
+    ----------
+    inside, outside : float
+        Film inside, and on the ground outdoors. [W/(m2 K)]
+    size : (float, float)
+        Length and width of the floor. [m]
+    far, depth : float
+        Soil beside the walls, and down to the deep temperature. [m]
+    conductivity : float
+        Of the soil. [W/(m K)]
+    yearly : bool
+        As of `Case`.
+    """
+
+    inside: float
+    outside: float
+    size: tuple[float, float] = (12.0, 12.0)
+    far: float = 15.0
+    depth: float = 15.0
+    conductivity: float = 1.9
+    yearly: bool = False
+
+    @property
+    def tree(self) -> Tree:
+        """Describe the room, its floor and the soil below it."""
+        length, width = self.size
+        tree = Case(self.inside, None).tree
+        tree["surfaces"]["floor"] |= {"area": length * width, "outside": {"soil": "below"}}
+        tree["zones"]["room"]["volume"] = 2.7 * length * width
+        tree["soil_blocks"] = {
+            "below": {
+                "length": length,
+                "width": width,
+                "wall_thickness": _WALL,
+                "conductivity": self.conductivity,
+                "heat_capacity": _HEAT_CAPACITY,
+                "inside_film": self.inside,
+                "outdoor_film": self.outside,
+                "far": self.far,
+                "depth": self.depth,
+                "deep_temperature": _OUTDOORS,
+                "before": {"mean": _OUTDOORS},
+            }
+        }
+        return tree
+
+
+_BLOCKS: Final = {
+    "GC30b": BlockCase(_STRONG, _STRONG),
+    "GC30c": BlockCase(_WEAK, _SURFACE_AIR, far=8.0),
+    "GC60b": BlockCase(_WEAK, _STRONG),
+    "GC65b": BlockCase(_WEAK, _WINDY),
+    "GC40b": BlockCase(_STRONG, _STRONG, yearly=True),
+    "GC45b": BlockCase(_STRONG, _STRONG, size=(36.0, 4.0), yearly=True),
+    "GC50b": BlockCase(_STRONG, _STRONG, size=(80.0, 80.0), yearly=True),
+    "GC55b": BlockCase(_STRONG, _STRONG, depth=2.0, yearly=True),
+    "GC70b": BlockCase(_WEAK, _WINDY, yearly=True),
+    "GC80b": BlockCase(_STRONG, _STRONG, conductivity=0.5, yearly=True),
+    "GC40c": BlockCase(_WEAK, _SURFACE_AIR, far=8.0, yearly=True),
+    "GC45c": BlockCase(_WEAK, _SURFACE_AIR, size=(36.0, 4.0), far=8.0, yearly=True),
+    "GC80c": BlockCase(_WEAK, _SURFACE_AIR, far=8.0, conductivity=0.85, yearly=True),
+}
+
 _CASES: Final = {
     "GC30b": Case(_STRONG, _STRONG),
     "GC30c": Case(_WEAK, None),
@@ -98,6 +167,27 @@ def lines(data: CaseData) -> Iterator[VerdictLine]:
         yield VerdictLine(
             name, "floor, numerical models", unit, value, float(np.mean(verified)), limits, peers
         )
+    for name, block in _BLOCKS.items():
+        verified = list(numerical[name].values())
+        yield VerdictLine(
+            name,
+            "floor, block of soil",
+            "kWh" if block.yearly else "W",
+            _heat_of_block(data, block),
+            float(np.mean(verified)),
+            (min(verified), max(verified)),
+            numerical[name] | formula.get(name, {}),
+        )
+
+
+def _heat_of_block(data: CaseData, case: BlockCase) -> float:
+    """Steady heat of the floor on a block of soil [W], or of a year [kWh]."""
+    from mascarin import steady
+
+    climate = CasePlace(25.8, -80.3, "Etc/GMT+5").climate({"air_temperature": np.full(_HOURS, _OUTDOORS)})
+    state = steady(data.building(case.tree), climate, outputs=["room.net_load"], step="1h")
+    heat = state["room.net_load"]
+    return 8.76 * heat if case.yearly else heat
 
 
 def _heat(data: CaseData, case: Case) -> float:
@@ -130,5 +220,5 @@ def _table(data: CaseData, name: str, columns: dict[str, int]) -> dict[str, dict
     return {
         row[1]: {program: float(row[column]) for program, column in columns.items() if row[column]}
         for row in cells
-        if len(row) > max(columns.values()) and row[1] in _CASES
+        if len(row) > max(columns.values()) and row[1] in _BLOCKS | _CASES
     }

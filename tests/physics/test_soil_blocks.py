@@ -1,0 +1,325 @@
+"""Blocks of soil: closed solutions of finite volumes and ladders, and runs of buildings on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.special import ellipk
+
+import mascarin as mc
+from mascarin.building import Building
+from mascarin.building.soil.courses import soil_of
+from mascarin.building.soil.finite_volumes import FiniteVolumes, SoilGeometry
+from mascarin.building.soil.ladder import SoilLadder, ladder_of
+from mascarin.errors import InputError
+
+K, C = 1.9, 1490.0 * 1800.0
+YEAR = 365.0 * 86400.0
+
+
+def geometry(**changes: Any) -> SoilGeometry:
+    numbers: dict[str, Any] = {
+        "length": np.inf, "width": 8.0, "wall": 0.3, "basement": 0.0, "far": 15.0, "depth": 15.0,
+        "conductivity": K, "capacity": C, "inside": 5.0, "outside": 20.0, "deep": True,
+    }  # fmt: skip
+    return SoilGeometry(**(numbers | changes))
+
+
+def column(depth: float, **changes: Any) -> SoilGeometry:
+    """Next to one dimension: nothing beside the floor."""
+    return geometry(width=20.0, wall=1e-6, far=1e-6, depth=depth, outside=1e-6, **changes)
+
+
+def admittance(ladder: SoilLadder, rate: complex, film: float = np.inf, cut: bool = False) -> complex:
+    """Heat into a ladder for a degree behind a film, growing at a rate [W/(m2 K)]."""
+    resistances, capacities = ladder.without_last if cut else (ladder.resistances, ladder.capacities)
+    value = 0.0 + 0.0j
+    impedance = complex(resistances[-1])
+    for resistance, capacity in zip(resistances[-2::-1], capacities[::-1], strict=True):
+        value = rate * capacity + 1.0 / impedance
+        impedance = resistance + 1.0 / value
+    return 1.0 / (impedance + 1.0 / film)
+
+
+def test_a_strip_by_conformal_mapping() -> None:
+    """A warm strip, insulated soil below its walls, cold ground: ``2 k K(a/b)/K'(a/b)`` for each metre and
+    degree.
+
+    The upper half-plane is mapped to a rectangle by an elliptic integral; a the half-width inside, b outside.
+    """
+    half, wall = 4.0, 0.5
+    size: dict[str, Any] = {"width": 2 * half, "wall": wall, "far": 400.0, "depth": 400.0}
+    block = geometry(**size, inside=1e6, outside=1e6, deep=False)
+    ratio = (half / (half + wall)) ** 2
+    exact = 2.0 * K * ellipk(ratio) / ellipk(1.0 - ratio)
+    assert ladder_of(block).loss * block.area == pytest.approx(exact, rel=0.012)
+
+
+@pytest.mark.parametrize("rate", [0.0, 1.0 / YEAR, 1e-6, 1e-5])
+def test_one_dimension(rate: float) -> None:
+    """A layer over a given temperature: ``k m coth(m d)`` with ``m = sqrt(rate C/k)``, behind a film."""
+    ladder = ladder_of(column(3.0))
+    m = np.sqrt(rate * C / K)
+    layer = K / 3.0 if rate == 0.0 else K * m / np.tanh(m * 3.0)
+    exact = 1.0 / (1.0 / layer + 1.0 / 5.0)
+    assert admittance(ladder, rate, 5.0).real == pytest.approx(exact, rel=2e-3)
+
+
+@pytest.mark.parametrize(("period", "tolerance"), [(YEAR, 3e-3), (30 * 86400.0, 3e-3), (86400.0, 2e-2)])
+def test_a_wave_in_a_half_space(period: float, tolerance: float) -> None:
+    """A periodic zone over soil without an end: ``sqrt(i w k C)``, the ladder without its last cells."""
+    ladder = ladder_of(column(60.0))
+    speed = 2j * np.pi / period
+    exact = 1.0 / (1.0 / np.sqrt(speed * K * C) + 1.0 / 5.0)
+    assert abs(admittance(ladder, speed, 5.0, cut=True) / exact - 1.0) < tolerance
+
+
+def test_the_ladder_has_the_response_of_the_finite_volumes() -> None:
+    """Of a rectangle, to zone and outdoors, at rates between those that it was made for."""
+    block = geometry(length=9.0)
+    volumes, ladder = FiniteVolumes(block), ladder_of(block)
+    shares = np.array(ladder.shares)
+    for rate in (0.0, 2.0 / YEAR, 3e-6):
+        field = volumes.solve(volumes.inside, rate)
+        to_zone = (volumes.inside.sum() - volumes.inside @ field) / block.area
+        assert admittance(ladder, rate, block.inside).real == pytest.approx(to_zone, rel=1e-5)
+        resistances = np.array(ladder.resistances) + np.eye(len(ladder.resistances))[0] / block.inside
+        links = 1.0 / resistances
+        matrix = np.diag(links[:-1] + links[1:] + rate * np.array(ladder.capacities))
+        matrix -= np.diag(links[1:-1], 1) + np.diag(links[1:-1], -1)
+        from_zone = np.linalg.solve(matrix, np.eye(len(matrix))[0] * links[0])
+        outdoors = volumes.outside @ field / block.area
+        assert shares @ from_zone == pytest.approx(outdoors, rel=3e-3)
+
+
+def test_all_resistances_and_capacities_are_positive() -> None:
+    for block in (geometry(), geometry(length=9.0, basement=2.0), geometry(vertical=(1.0, 2.0))):
+        ladder = ladder_of(block)
+        assert min(ladder.resistances) > 0.0
+        assert min(ladder.capacities) > 0.0
+
+
+def test_insulation_and_basement() -> None:
+    """Edge insulation keeps heat in, more of it more. A basement by ISO 13370:2017, 7.4.4, within 3 %."""
+    bare, thin, thick = (
+        ladder_of(geometry(horizontal=(1.0, resistance))).loss for resistance in (0.0, 0.5, 3.0)
+    )
+    assert thick < thin < bare
+    vertical = [ladder_of(geometry(vertical=(depth, 2.0))).loss for depth in (0.5, 1.5)]
+    assert vertical[1] < vertical[0] < bare
+    deep, size, films = 2.5, 8.0, 1.0 / 5.0 + 1.0 / 20.0
+    floor, walls = 0.3 + K * films, K * films
+    thick = floor + 0.5 * deep
+    u_floor = 2.0 * K / (np.pi * size + thick) * np.log(np.pi * size / thick + 1.0)
+    u_walls = 2.0 * K / (np.pi * deep) * (1.0 + 0.5 * walls / (walls + deep)) * np.log(deep / walls + 1.0)
+    mean = (size * u_floor + 2.0 * deep * u_walls) / (size + 2.0 * deep)
+    assert ladder_of(geometry(basement=deep)).loss == pytest.approx(mean, rel=0.03)
+
+
+# --- buildings ----------------------------------------------------------------------------------------------
+
+
+def tree(**changes: Any) -> dict[str, Any]:
+    block: dict[str, Any] = {
+        "width": 8.0, "wall_thickness": 0.3, "conductivity": K, "heat_capacity": C, "inside_film": 5.0,
+        "outdoor_film": 20.0, "deep_temperature": 10.0, "before": {"mean": 10.0},
+    }  # fmt: skip
+    floor = {
+        "construction": "floor", "area": 64.0, "tilt": 180, "outside": {"soil": "below"},
+        "inside": {"zone": "room", "convection": 5.0, "emissivity": 0.9},
+    }  # fmt: skip
+    return {
+        "name": "on soil",
+        "site": {"latitude": 48, "longitude": 2, "altitude": 0, "timezone": "UTC+1"},
+        "materials": {"concrete": {"conductivity": 2.0, "density": 2300, "specific_heat": 900}},
+        "constructions": {"floor": {"layers": [{"material": "concrete", "thickness": 0.1}]}},
+        "zones": {"room": {"volume": 160.0, "longwave": "none", "infiltration": 0.5}},
+        "soil_blocks": {"below": block | changes},
+        "surfaces": {"floor": floor},
+    }
+
+
+def building(**changes: Any) -> Building:
+    return Building.from_dict(tree(**changes))
+
+
+def climate(air: Any) -> mc.Climate:
+    index = pd.date_range("2001-01-01", periods=len(air), freq="1h", tz="Etc/GMT-1")
+    absent = ["radiation", "dew_point", "wind_speed", "wind_direction"]
+    table = pd.DataFrame({"T": air}, index=index)
+    return mc.Climate.from_table(table, columns={"air_temperature": "T"}, absent=absent)
+
+
+def held(description: dict[str, Any], temperature: float = 20.0) -> dict[str, Any]:
+    description["zones"]["room"] = {"volume": 160.0, "longwave": "none", "held": temperature}
+    return description
+
+
+def test_steady_heat_of_a_building() -> None:
+    """The heat of a held zone is that of the finite volumes, film and concrete included."""
+    here = Building.from_dict(held(tree(before={"mean": 4.0})))
+    state = mc.steady(here, climate(np.full(48, 4.0)), outputs=["room.net_load"], step="1h")
+    soil = soil_of(here, "floor")
+    assert soil is not None
+    ladder = soil.ladder
+    to_outdoors = ladder.loss - ladder.loss_to_deep
+    expected = 64.0 * (ladder.loss_to_deep * (20.0 - 10.0) + to_outdoors * (20.0 - 4.0))
+    assert state["room.net_load"] == pytest.approx(expected, rel=1e-5)
+
+
+def test_uniform_temperature_stays() -> None:
+    """Everything as warm as the deep soil: no heat flows."""
+    here = Building.from_dict(held(tree(), 10.0))
+    result = mc.simulate(here, climate(np.full(96, 10.0)), step="1h", outputs=["room.net_load"])
+    assert result.to_dataframe().abs().max().item() < 1e-4
+
+
+def test_the_outdoor_year() -> None:
+    """Amplitude and delay of the heat by a yearly swing outdoors are those of the finite volumes."""
+    from scipy.sparse import diags
+    from scipy.sparse.linalg import spsolve
+
+    speed = 2.0 * np.pi / YEAR
+    hours = np.arange(1, 8760 + 25)
+    year = climate(10.0 - 8.0 * np.cos(speed * 3600.0 * hours))
+    here = Building.from_dict(held(tree(before=None)))
+    result = mc.simulate(here, year, step="1h", outputs=["room.net_load"], end="2002-01-01")
+    load = result.to_dataframe()["room.net_load"].to_numpy()[-8760:]
+    soil = soil_of(here, "floor")
+    assert soil is not None
+    volumes = FiniteVolumes(soil.geometry)
+    matrix = diags(1j * speed * volumes.capacities).tocsc() + volumes.matrix.tocsc()
+    through = volumes.inside @ spsolve(matrix, volumes.outside.astype(complex)) / volumes.block.area
+    steady = volumes.inside.sum() - volumes.inside @ volumes.solve(volumes.inside)
+    angle = speed * 3600.0 * np.arange(8760)
+    exact = 64.0 * (10.0 * steady / volumes.block.area + 8.0 * np.real(through * np.exp(1j * angle)))
+    # The start is that of a zone held for ever within some hundredths of a kelvin of the soil: 1.8 W.
+    assert np.abs(load - exact).max() < 0.02 * 64.0 * 8.0 * abs(through)
+    assert result.energy.relative_residual < 1e-10
+
+
+def test_a_layered_floor_in_one_dimension() -> None:
+    """Wide soil is the layered floor that the engine has: a step of the zone over a month."""
+    numbers: dict[str, Any] = {
+        "width": 500.0,
+        "wall_thickness": 0.05,
+        "outdoor_film": 0.5,
+        "far": 1.0,
+        "depth": 2.0,
+    }
+    on_block = Building.from_dict(held(tree(**numbers)))
+    plain = held(tree())
+    plain["materials"]["soil"] = {"conductivity": K, "density": 1490, "specific_heat": 1800}
+    plain["constructions"]["floor"]["layers"].insert(0, {"material": "soil", "thickness": 2.0})
+    plain["surfaces"]["floor"]["outside"] = {"ground": {"mean": 10.0}}
+    del plain["soil_blocks"]
+    weather = climate(np.full(24 * 30, 10.0))
+    options: Any = {"step": "1h", "outputs": ["room.net_load"], "initial": 10.0}
+    one, other = (
+        mc.simulate(each, weather, **options).to_dataframe()["room.net_load"].to_numpy()[24:]
+        for each in (on_block, Building.from_dict(plain))
+    )
+    assert np.abs(one / other - 1.0).max() < 0.02
+    assert abs(one[-1] / other[-1] - 1.0) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("path", "step", "tolerance"),
+    [
+        ("zones.room.infiltration.constant", 1e-3, 1e-5),
+        # The block is reduced again for another construction, whose derivative it does not have.
+        ("materials.concrete.conductivity", 1e-2, 0.05),
+    ],
+)
+def test_derivatives(path: str, step: float, tolerance: float) -> None:
+    """Slopes by other parameters are those of two runs."""
+    here = building()
+    weather = climate(10.0 + 5.0 * np.sin(2 * np.pi * np.arange(96) / 24.0))
+    options: Any = {"step": "1h", "outputs": ["room.air_temperature"], "initial": 15.0}
+    slopes = mc.jacobian(here, weather, vary=[path], **options)
+    value = here.parameter(path).value
+    ends = [
+        mc.simulate(here, weather, parameters={path: other}, **options).to_dataframe().to_numpy()[-1, 0]
+        for other in (value - step, value + step)
+    ]
+    derivatives = next(variable for variable in slopes.data_vars.values() if "parameter" in variable.dims)
+    slope = float(derivatives.isel(parameter=0, time=-1).squeeze())
+    assert slope == pytest.approx((ends[1] - ends[0]) / (2.0 * step), rel=tolerance, abs=1e-4)
+
+
+def test_members_are_runs() -> None:
+    """Eight members in lanes have the air of a run each."""
+    here = building()
+    weather = climate(10.0 + 5.0 * np.sin(2 * np.pi * np.arange(48) / 24.0))
+    options: Any = {"step": "1h", "outputs": ["room.air_temperature"], "initial": 15.0}
+    path = "zones.room.infiltration.constant"
+    values = np.linspace(0.2, 1.6, 8)
+    members = mc.sweep(here, weather, {path: values}, **options)
+    air = next(variable for variable in members.data_vars.values() if "time" in variable.dims)
+    for value, member in zip(values, np.asarray(air).reshape(-1, air.sizes["time"]), strict=True):
+        alone = mc.simulate(here, weather, parameters={path: float(value)}, **options)
+        assert member[-1] == pytest.approx(alone.to_dataframe().to_numpy()[-1, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda t: t["soil_blocks"]["below"].update(length=9.0), "72 m2 within 1 %: floor of block 'below'"),
+        (lambda t: t["surfaces"].update(other=dict(t["surfaces"]["floor"])), "one surface on a block"),
+        (
+            lambda t: t["surfaces"]["floor"].update(outside={"soil": "under"}),
+            "a block of soil under 'soil_blocks:'",
+        ),
+        (lambda t: t["soil_blocks"].update(more=dict(t["soil_blocks"]["below"])), "no surface is on"),
+        (lambda t: t["soil_blocks"]["below"].update(basement_depth=14.0), "a floor that is on the block"),
+        (
+            lambda t: t.update(weather={"columns": {"air_temperature": {"offset": 1.0}}}),
+            "a corrected air temperature beside a block of soil",
+        ),
+        (
+            lambda t: t["surfaces"]["floor"].update(outside={"soil": "below", "convection": 8}),
+            "'convection' on a side facing soil",
+        ),
+    ],
+)
+def test_what_does_not_fit_is_named(change: Callable[[dict[str, Any]], None], words: str) -> None:
+    description = tree()
+    change(description)
+    with pytest.raises(InputError, match=words):
+        Building.from_dict(description)
+
+
+def test_floors_that_overlap() -> None:
+    description = tree(length=8.0)
+    square = [[0, 0, 0], [0, 8, 0], [8, 8, 0], [8, 0, 0]]
+    floor = description["surfaces"]["floor"]
+    del floor["area"], floor["tilt"]
+    floor["vertices"] = square
+    description["zones"]["next"] = dict(description["zones"]["room"])
+    moved = [[x + 6, y, z] for x, y, z in square]
+    inside = floor["inside"] | {"zone": "next"}
+    description["surfaces"]["second"] = floor | {
+        "vertices": moved,
+        "inside": inside,
+        "outside": {"soil": "beside"},
+    }
+    description["soil_blocks"]["beside"] = dict(description["soil_blocks"]["below"])
+    with pytest.raises(InputError, match="a floor that overlaps that of block 'below' by 2 m by 8 m"):
+        Building.from_dict(description)
+
+
+def test_a_short_weather_needs_what_was_before() -> None:
+    with pytest.raises(InputError, match=r"soil_blocks.below.before: found 2 days of weather"):
+        mc.simulate(building(before=None), climate(np.full(48, 5.0)), step="1h")
+
+
+def test_numbers_of_a_block_do_not_vary_in_a_compiled_run() -> None:
+    parameter = building().parameter("soil_blocks.below.conductivity")
+    assert parameter.structural
+    assert "reduced once" in (parameter.reason or "")
+    with pytest.raises(InputError, match="reduced once"):
+        mc.jacobian(building(), climate(np.full(48, 5.0)), vary=["soil_blocks.below.conductivity"], step="1h")
