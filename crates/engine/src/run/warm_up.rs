@@ -182,24 +182,31 @@ mod tests {
     }
 
     /// After how many repetitions a sequence of temperatures comes back.
-    fn circle(tolerance: f64, temperature: impl Fn(i32) -> f64) -> Option<usize> {
-        let mut circle = Circle::new(&state(temperature(0)), tolerance);
-        (1..=1000).find(|&cycle| circle.comes_back(&state(temperature(cycle as i32)), cycle))
+    fn circle(tolerance: f64, temperatures: impl Iterator<Item = f64>) -> Option<usize> {
+        let mut circle = Circle::new(&state(f64::NAN), tolerance);
+        let mut cycles = (1..).zip(temperatures.take(1000));
+        cycles.find_map(|(cycle, next)| circle.comes_back(&state(next), cycle).then_some(cycle))
+    }
+
+    /// A factor to the power of 1, 2, 3, ...
+    fn powers(factor: f64) -> impl Iterator<Item = f64> {
+        core::iter::successors(Some(factor), move |power| Some(power * factor))
     }
 
     /// A circle of seven repetitions after a transient: it is seen as soon as a state of it is remembered for seven. What converges, from one
     /// side or in decaying circles, is none, however small the tolerance is.
     #[test]
     fn a_circle_is_seen_and_a_slow_decay_is_none() {
-        let turning = |cycle: i32| f64::from(cycle % 7) + 5.0 * 0.5_f64.powi(cycle);
+        let turning = (1..).zip(powers(0.5)).map(|(cycle, decay)| f64::from(cycle % 7) + 5.0 * decay);
         assert_eq!(circle(0.01, turning), Some(32 + 7));
         for tolerance in [1e-2, 1e-9] {
-            // Until the change between two repetitions is below the tolerance.
-            let change = |decay: f64| (tolerance / (1.0 - decay)).ln() / decay.ln();
-            let seen = circle(tolerance, |cycle| 20.0 + 0.98_f64.powi(cycle));
-            assert!(seen.is_none_or(|cycle| cycle as f64 > change(0.98)), "{tolerance}: {seen:?}");
-            let swinging = circle(tolerance, |cycle| 20.0 + (-0.9_f64).powi(cycle));
-            assert!(swinging.is_none_or(|cycle| cycle as f64 > change(0.9)), "{tolerance}: {swinging:?}");
+            for factor in [0.98, -0.9] {
+                let seen = circle(tolerance, powers(factor).map(|decay| 20.0 + decay));
+                // The change between two repetitions is below the tolerance by then.
+                let change = powers(factor).map(|power| (power * (1.0 - factor)).abs());
+                let converged = change.take_while(|&change| change > tolerance).count();
+                assert!(seen.is_none_or(|cycle| cycle > converged), "{tolerance}, {factor}: {seen:?}");
+            }
         }
     }
 }

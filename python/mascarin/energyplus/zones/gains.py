@@ -153,7 +153,7 @@ def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
     present = year(context, item, "number_of_people_schedule_name")
     activity = year(context, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
-    whole = combined(lambda presence, heat: count * presence * heat, present, activity)
+    released = combined(lambda presence, heat: count * presence * heat, present, activity)
     if share is None:
         power = combined(
             lambda presence, heat, room: count * presence * sensible(heat, room), present, activity, air
@@ -171,7 +171,7 @@ def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
     else:
         sensible_share = share
         power = combined(lambda presence, heat: count * presence * heat * sensible_share, present, activity)
-    latent = combined(lambda total, heat: max(total - heat, 0.0), whole, power)
+    latent = combined(lambda total, heat: max(total - heat, 0.0), released, power)
     context.vapour.append(Vapour(item, zone.name, latent))
     return Heat(item, item.name, power, item.number("fraction_radiant") or 0.0)
 
