@@ -53,6 +53,35 @@ impl<S: Real> Circle<S> {
     }
 }
 
+/// Lanes that repeat the period, and what is left to change in them.
+struct Progress<S: Real> {
+    tolerance: f64,
+    active: S::Mask,
+    circle: Circle<S>,
+    /// Lanes that go round in a circle: they will never converge.
+    circling: S::Mask,
+    /// Largest change in the last repetition [K].
+    change_left: S,
+}
+
+impl<S: Real> Progress<S> {
+    fn new(state: &State<S>, tolerance: f64) -> Self {
+        let circle = Circle::new(state, tolerance);
+        let circling = S::Mask::splat(false);
+        Self { tolerance, active: S::Mask::splat(true), circle, circling, change_left: S::zero() }
+    }
+
+    /// Notes a repetition, counted from 1, and its largest change [K]. Gives the lanes that made it.
+    fn note(&mut self, next: &State<S>, change: S, cycle: usize, failed: S::Mask) -> S::Mask {
+        let reached = self.active;
+        self.change_left = S::select(reached, change, self.change_left);
+        self.active = reached & !failed & S::constant(self.tolerance).lt(change);
+        self.circling = self.circling | (self.active & self.circle.comes_back(next, cycle));
+        self.active = self.active & !self.circling;
+        reached
+    }
+}
+
 /// Repetitions by which a change of soil is multiplied at most: more would ask for what short periods never show.
 const SLOWEST: f64 = 200.0;
 /// Repetitions after which soil counts as all else does: a control that switches moves it a little, again and again.
@@ -71,13 +100,10 @@ pub(super) fn warm_up<'a, S: Real>(
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
     let tolerance = warmup.tolerance.max(LEAST.of::<S>());
     let soil = slow_soil(stepper.model.plan, warmup.steps as f64 * options.dt);
-    let mut active = S::Mask::splat(true);
-    let mut change_left = S::zero();
+    let mut progress = Progress::new(state, tolerance);
     let mut known: Option<PeriodicStart<S>> = None;
     // What the guesses of the lanes that have converged are made from, as their last repetition left it.
     let mut history: Option<History<S>> = None;
-    // Lanes that will never converge.
-    let (mut circle, mut circling) = (Circle::new(state, tolerance), S::Mask::splat(false));
     let mut cycles = warmup.max_cycles;
     for cycle in 1..=warmup.max_cycles {
         let mut next = state.clone();
@@ -89,9 +115,7 @@ pub(super) fn warm_up<'a, S: Real>(
             observe(stepper, &next, action)?;
         }
         let change = largest_change(state, &next, if cycle <= SETTLING { &soil } else { &[] });
-        let reached = active;
-        change_left = S::select(active, change, change_left);
-        active = active & !stepper.failed() & S::constant(tolerance).lt(change);
+        let reached = progress.note(&next, change, cycle, stepper.failed());
         if S::LANES > 1 {
             let now = stepper.history();
             match &mut history {
@@ -99,16 +123,14 @@ pub(super) fn warm_up<'a, S: Real>(
                 None => history = Some(now),
             }
         }
-        circling = circling | (active & circle.comes_back(&next, cycle));
-        active = active & !circling;
-        if !active.any() {
+        if !progress.active.any() {
             state.take(reached, &next);
-            if circling.any() {
+            if progress.circling.any() {
                 cycles = cycle;
                 break;
             }
             restore(stepper, history.as_ref());
-            return Ok((cycle, change_left));
+            return Ok((cycle, progress.change_left));
         }
         let start = if let Some(known) = &mut known {
             known.next(&stepper.model, state, &next, change, tolerance)
@@ -117,13 +139,14 @@ pub(super) fn warm_up<'a, S: Real>(
             next.clone()
         };
         state.take(reached, &next);
-        state.take(active, &start);
+        state.take(progress.active, &start);
         stepper.guess.move_by(&next, state);
     }
-    active = active | circling;
+    let Progress { active, circling, change_left, .. } = progress;
+    let lost = active | circling;
     // Lanes that have converged do not depend on the others: these are run again alone.
-    if S::LANES > 1 && (!(active | stepper.failed())).any() {
-        stepper.mark_failed(active);
+    if S::LANES > 1 && (!(lost | stepper.failed())).any() {
+        stepper.mark_failed(lost);
         restore(stepper, history.as_ref());
         return Ok((cycles, change_left));
     }
