@@ -117,11 +117,7 @@ pub(super) fn warm_up<'a, S: Real>(
         let change = largest_change(state, &next, if cycle <= SETTLING { &soil } else { &[] });
         let reached = progress.note(&next, change, cycle, stepper.failed());
         if S::LANES > 1 {
-            let now = stepper.history();
-            match &mut history {
-                Some(history) => history.take(reached, &now),
-                None => history = Some(now),
-            }
+            remember(&mut history, reached, stepper.history());
         }
         if !progress.active.any() {
             state.take(reached, &next);
@@ -177,6 +173,14 @@ fn slow_soil(plan: &Plan, period: f64) -> Vec<(usize, f64)> {
         }
     }
     slow
+}
+
+/// Takes over what guesses are made from, in some lanes.
+fn remember<S: Real>(history: &mut Option<History<S>>, reached: S::Mask, now: History<S>) {
+    match history {
+        Some(history) => history.take(reached, &now),
+        None => *history = Some(now),
+    }
 }
 
 /// Sets what guesses are made from.
