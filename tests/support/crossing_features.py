@@ -298,6 +298,16 @@ def _boundaries_and_densities(tree: Json) -> None:
     tree["zones"]["room"]["infiltration"] = {"constant": 0.5, "density": "outdoors"}
 
 
+def _soil(tree: Json) -> None:
+    """A floor on a strip of soil."""
+    tree["soil_blocks"] = {
+        "below": {"width": 3, "wall_thickness": 0.2, "conductivity": 1.5, "heat_capacity": 2.5e6,
+                  "before": {"mean": 22, "amplitude": 4, "coldest_day": 40}},
+    }  # fmt: skip
+    tree["surfaces"]["floor"] = {"construction": "wall", "area": 12, "tilt": 180,
+                                 "outside": {"soil": "below"}, "inside": _side("room")}  # fmt: skip
+
+
 def _plain(tree: Json) -> None:
     """A room without anything."""
 
@@ -314,6 +324,7 @@ FEATURES: Final[dict[str, Callable[[Json], None]]] = {
     "vents": _vents,
     "controls": _controls,
     "heat sources": _heat_sources,
+    "soil": _soil,
     "openings": _openings,
     "blinds": _blinds,
     "loads": _loads,

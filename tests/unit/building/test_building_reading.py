@@ -112,7 +112,7 @@ FAULTS = {
         "surfaces.rest.outside",
         [
             "zone and adiabatic",
-            "exactly one of outdoors, zone, ground, imposed, measured, scheduled, heat_flux, adiabatic",
+            "exactly one of outdoors, zone, ground, soil, imposed, measured, scheduled, heat_flux, adiabatic",
         ],
     ),
     "no facing": (

@@ -11,6 +11,7 @@ from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.zones.zones import Zone
+from mascarin.physics import KELVIN
 
 COLD_DOORS: Final = "ZoneRefrigerationDoorMixing"
 #: Of the flow through a doorway over ``A sqrt(g H (1 - rho_warm/rho_cold))`` (Gosney and Olama 1975) [-].
@@ -22,7 +23,6 @@ _LARGE_DIFFERENCE: Final = 11.0
 _OPEN_SHARE: Final[Mapping[str, float]] = {"none": 1.0, "aircurtain": 0.5, "stripcurtain": 0.1}
 #: Of the density of the site (ISO 2533) [K].
 _SITE_TEMPERATURE: Final = 288.15
-_ZERO: Final = 273.15
 
 
 def discharge(cold: float, warm: float, share: float = 1.0) -> float:
@@ -47,7 +47,7 @@ def discharge(cold: float, warm: float, share: float = 1.0) -> float:
     >>> round(discharge(2.0, 20.0) / discharge(2.0, 20.0, 0.5), 3)
     2.0
     """
-    low, high = cold + _ZERO, warm + _ZERO
+    low, high = cold + KELVIN, warm + KELVIN
     density_factor = math.pow(2.0 / (1.0 + math.cbrt(high / low)), 1.5)
     flow_factor = _FLOW_FACTORS[warm - cold > _LARGE_DIFFERENCE]
     density = _SITE_TEMPERATURE / low

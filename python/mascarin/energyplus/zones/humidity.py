@@ -12,7 +12,14 @@ from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.model.year import Year, combined, constant
-from mascarin.physics import dew_point, relative_humidity, saturation_pressure, standard_density
+from mascarin.physics import (
+    KELVIN,
+    STANDARD_PRESSURE,
+    dew_point,
+    relative_humidity,
+    saturation_pressure,
+    standard_density,
+)
 
 SETTINGS: Final = "MaterialProperty:MoisturePenetrationDepth:Settings"
 #: Relative humidities of the straight lines that stand for a curve [-].
@@ -21,13 +28,10 @@ _POINTS: Final = (0.0, 0.02, 0.05, *(round(0.1 * k, 1) for k in range(1, 8)), 0.
 #: Air at which EnergyPlus takes the depths of layers: temperature [degC], relative humidity [-], pressure
 #: [Pa]; and the periods of both layers [s] (EnergyPlus Engineering Reference, effective moisture penetration
 #: depth).
-_USUAL: Final = (24.0, 0.45, 101325.0)
+_USUAL: Final = (24.0, 0.45, STANDARD_PRESSURE)
 _PERIODS: Final = (24 * 3600.0, 21 * 24 * 3600.0)
 #: Enthalpy of vapour by which EnergyPlus divides latent heat: at 0 degC [J/kg], by temperature [J/(kg K)].
 _ENTHALPY: Final = (2500940.0, 1858.95)
-#: Gas constant of dry air [J/(kg K)], and the temperature of standard air [K].
-_GAS, _STANDARD_AIR = 287.055, 288.15
-_ZERO: Final = 273.15
 
 
 def describe_humidity(context: Context, air: Mapping[str, float]) -> None:
@@ -161,7 +165,7 @@ def _depths(item: IdfObject, density: float, resistance: float) -> tuple[float, 
         scale = item.number(f"moisture_equation_coefficient_{factor}") or 0.0
         exponent = item.number(f"moisture_equation_coefficient_{power}") or 0.0
         slope += scale * exponent * humidity ** (exponent - 1.0) if scale != 0.0 else 0.0
-    permeability = 2.0e-7 * (warm + _ZERO) ** 0.81 / pressure / resistance
+    permeability = 2.0e-7 * (warm + KELVIN) ** 0.81 / pressure / resistance
     full = float(saturation_pressure(warm))
     depths = []
     for which, period in zip(("surface", "deep"), _PERIODS, strict=True):
@@ -284,7 +288,7 @@ def _coil(context: Context, system: IdfObject) -> float:
     """Dew point of the driest supply air. [degC]"""
     ratio = system.number("minimum_cooling_supply_air_humidity_ratio")
     altitude = float(context.section("site").get("altitude", 0.0))
-    pressure = standard_density(altitude) * _GAS * _STANDARD_AIR
+    pressure = STANDARD_PRESSURE * standard_density(altitude) / standard_density(0.0)
     percent = relative_humidity(_USUAL[0], 0.0077 if ratio is None else ratio, pressure)
     return round(float(dew_point([_USUAL[0]], [float(percent)])[0]), 4)
 

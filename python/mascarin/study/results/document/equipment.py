@@ -21,7 +21,8 @@ SECTIONS: Final[Mapping[str, str]] = {
     "windows": "window", "glazings": "glazing", "shades": "shade", "vents": "vent", "openings": "opening",
     "air_paths": "air path", "ventilation_units": "ventilation unit", "controls": "control",
     "heat_sources": "heat source", "schedules": "schedule", "derived_outputs": "derived output",
-    "ties": "tied", "humidity": "", "weather": "", "dimensions": "", "posterior": "",
+    "soil_blocks": "block of soil", "ties": "tied", "humidity": "", "weather": "", "dimensions": "",
+    "posterior": "",
 }  # fmt: skip
 #: Sections that are one part with rows of their own.
 _SINGLE: Final = ("dimensions", "weather")
