@@ -73,6 +73,16 @@ ZoneHVAC:EquipmentConnections,Store,Store list,,,Store node,;
 ZoneHVAC:EquipmentList,Store list,SequentialLoad,ZoneHVAC:LowTemperatureRadiant:Electric,Mat,1,1,,;
 """
 
+_SKIN = """
+SurfaceProperty:HeatTransferAlgorithm,Back,MoisturePenetrationDepthConductionTransferFunction;
+MaterialProperty:MoisturePenetrationDepth:Settings,Brick,6,0.0068,0.939,0.0202,12.2,0.004,0.008,0.0001,500;
+"""
+_KIVA = """
+Foundation:Kiva,Pad,20,,,,,,,,0.3;
+BuildingSurface:Detailed,Ground,Floor,Wall,Store,,Foundation,Pad,NoSun,NoWind,autocalculate,4,
+  4,3,0, 6,3,0, 6,0,0, 4,0,0;
+"""
+
 #: By feature: objects, and whether the building has it.
 OBJECTS: Final[dict[str, Objects]] = {
     "nothing": Objects("", lambda one: len(one.zones) == 2),
@@ -97,11 +107,12 @@ OBJECTS: Final[dict[str, Objects]] = {
     "mechanical air": Objects("", lambda one: bool(one.air_paths)),
     "shades": Objects("", lambda one: bool(one.shades)),
     "heat sources": Objects(_MAT, lambda one: len(one.heat_sources) == 1),
+    "humidity": Objects(_SKIN, lambda one: one.humidity is not None),
+    "soil": Objects(_KIVA, None, "Foundation:Kiva"),
 }
 #: Features that a model of EnergyPlus cannot have, with the reason.
 WITHOUT_OBJECTS: Final = {
     "products": "the catalogue belongs to Mascarin",
-    "humidity": "the vapour of people and materials is part of other objects, whose findings name it",
     "thermal bridges": "EnergyPlus has no object for them",
     "supercooling": "hysteresis of EnergyPlus has two curves, and no nucleation",
     "sensors and ties": "outputs inside walls belong to nodes, and numbers are not tied",
