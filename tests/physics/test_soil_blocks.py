@@ -161,9 +161,9 @@ def held(description: dict[str, Any], temperature: float = 20.0) -> dict[str, An
 
 def test_steady_heat_of_a_building() -> None:
     """The heat of a held zone is that of the finite volumes, film and concrete included."""
-    here = Building.from_dict(held(tree(before={"mean": 4.0})))
-    state = mc.steady(here, climate(np.full(48, 4.0)), outputs=["room.net_load"], step="1h")
-    soil = soil_of(here, "floor")
+    house = Building.from_dict(held(tree(before={"mean": 4.0})))
+    state = mc.steady(house, climate(np.full(48, 4.0)), outputs=["room.net_load"], step="1h")
+    soil = soil_of(house, "floor")
     assert soil is not None
     ladder = soil.ladder
     to_outdoors = ladder.loss - ladder.loss_to_deep
@@ -173,8 +173,8 @@ def test_steady_heat_of_a_building() -> None:
 
 def test_uniform_temperature_stays() -> None:
     """Everything as warm as the deep soil: no heat flows."""
-    here = Building.from_dict(held(tree(), 10.0))
-    result = mc.simulate(here, climate(np.full(96, 10.0)), step="1h", outputs=["room.net_load"])
+    house = Building.from_dict(held(tree(), 10.0))
+    result = mc.simulate(house, climate(np.full(96, 10.0)), step="1h", outputs=["room.net_load"])
     assert result.to_dataframe().abs().max().item() < 1e-4
 
 
@@ -186,10 +186,10 @@ def test_the_outdoor_year() -> None:
     speed = 2.0 * np.pi / YEAR
     hours = np.arange(1, 8760 + 25)
     year = climate(10.0 - 8.0 * np.cos(speed * 3600.0 * hours))
-    here = Building.from_dict(held(tree(before=None)))
-    result = mc.simulate(here, year, step="1h", outputs=["room.net_load"], end="2002-01-01")
+    house = Building.from_dict(held(tree(before=None)))
+    result = mc.simulate(house, year, step="1h", outputs=["room.net_load"], end="2002-01-01")
     load = result.to_dataframe()["room.net_load"].to_numpy()[-8760:]
-    soil = soil_of(here, "floor")
+    soil = soil_of(house, "floor")
     assert soil is not None
     volumes = FiniteVolumes(soil.geometry)
     matrix = diags(1j * speed * volumes.capacities).tocsc() + volumes.matrix.tocsc()
@@ -219,12 +219,12 @@ def test_a_layered_floor_in_one_dimension() -> None:
     del plain["soil_blocks"]
     weather = climate(np.full(24 * 30, 10.0))
     options: Any = {"step": "1h", "outputs": ["room.net_load"], "initial": 10.0}
-    one, other = (
+    by_block, by_layers = (
         mc.simulate(each, weather, **options).to_dataframe()["room.net_load"].to_numpy()[24:]
         for each in (on_block, Building.from_dict(plain))
     )
-    assert np.abs(one / other - 1.0).max() < 0.02
-    assert abs(one[-1] / other[-1] - 1.0) < 0.01
+    assert np.abs(by_block / by_layers - 1.0).max() < 0.02
+    assert abs(by_block[-1] / by_layers[-1] - 1.0) < 0.01
 
 
 @pytest.mark.parametrize(
@@ -237,13 +237,13 @@ def test_a_layered_floor_in_one_dimension() -> None:
 )
 def test_derivatives(path: str, step: float, tolerance: float) -> None:
     """Slopes by other parameters are those of two runs."""
-    here = building()
+    house = building()
     weather = climate(10.0 + 5.0 * np.sin(2 * np.pi * np.arange(96) / 24.0))
     options: Any = {"step": "1h", "outputs": ["room.air_temperature"], "initial": 15.0}
-    slopes = mc.jacobian(here, weather, vary=[path], **options)
-    value = here.parameter(path).value
+    slopes = mc.jacobian(house, weather, vary=[path], **options)
+    value = house.parameter(path).value
     ends = [
-        mc.simulate(here, weather, parameters={path: other}, **options).to_dataframe().to_numpy()[-1, 0]
+        mc.simulate(house, weather, parameters={path: other}, **options).to_dataframe().to_numpy()[-1, 0]
         for other in (value - step, value + step)
     ]
     derivatives = next(variable for variable in slopes.data_vars.values() if "parameter" in variable.dims)
@@ -253,15 +253,15 @@ def test_derivatives(path: str, step: float, tolerance: float) -> None:
 
 def test_members_are_runs() -> None:
     """Eight members in lanes have the air of a run each."""
-    here = building()
+    house = building()
     weather = climate(10.0 + 5.0 * np.sin(2 * np.pi * np.arange(48) / 24.0))
     options: Any = {"step": "1h", "outputs": ["room.air_temperature"], "initial": 15.0}
     path = "zones.room.infiltration.constant"
     values = np.linspace(0.2, 1.6, 8)
-    members = mc.sweep(here, weather, {path: values}, **options)
+    members = mc.sweep(house, weather, {path: values}, **options)
     air = next(variable for variable in members.data_vars.values() if "time" in variable.dims)
     for value, member in zip(values, np.asarray(air).reshape(-1, air.sizes["time"]), strict=True):
-        alone = mc.simulate(here, weather, parameters={path: float(value)}, **options)
+        alone = mc.simulate(house, weather, parameters={path: float(value)}, **options)
         assert member[-1] == pytest.approx(alone.to_dataframe().to_numpy()[-1, 0], abs=1e-9)
 
 

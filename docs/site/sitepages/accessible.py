@@ -23,10 +23,7 @@ def name_toggles(site: Path) -> int:
     int
         In how many pages they were.
     """
-    pages = [page for page in site.rglob("*.html") if _TOGGLE in page.read_text(encoding="utf-8")]
-    for page in pages:
-        page.write_text(page.read_text(encoding="utf-8").replace(_TOGGLE, _NAMED), encoding="utf-8")
-    return len(pages)
+    return _replace(site, _TOGGLE, _NAMED)
 
 
 #: The corner of a table of pandas: a head of nothing.
@@ -46,7 +43,12 @@ def fill_corners(site: Path) -> int:
     int
         In how many pages they were.
     """
-    pages = [page for page in site.rglob("*.html") if _CORNER in page.read_text(encoding="utf-8")]
+    return _replace(site, _CORNER, "<td></td>")
+
+
+def _replace(site: Path, old: str, new: str) -> int:
+    """Replace a text in all pages; in how many it was."""
+    pages = [page for page in site.rglob("*.html") if old in page.read_text(encoding="utf-8")]
     for page in pages:
-        page.write_text(page.read_text(encoding="utf-8").replace(_CORNER, "<td></td>"), encoding="utf-8")
+        page.write_text(page.read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
     return len(pages)

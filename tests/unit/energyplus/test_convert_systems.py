@@ -147,14 +147,14 @@ def test_no_vapour_without_its_method(tmp_path: Path) -> None:
     conversion = changed(tmp_path, "vapour", plain)
     assert "humidity" not in conversion.description
     assert conversion.complete
-    one = changed(
+    converted = changed(
         tmp_path,
         "vapour",
         plain,
         ("  SimulationControl,", "  SurfaceProperty:HeatTransferAlgorithm,room N,"
          "MoisturePenetrationDepthConductionTransferFunction;\n  SimulationControl,"),
     )  # fmt: skip
-    surfaces = one.description["humidity"]["surfaces"]
+    surfaces = converted.description["humidity"]["surfaces"]
     assert surfaces["room_N"] == {"paint": 0.05}
     assert surfaces["room_S"] == {"sealed": True}, "solved by heat alone"
     assert surfaces["room_F"] == {"sealed": True}
