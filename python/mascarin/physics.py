@@ -31,6 +31,7 @@ __all__ = [
     "AIR_SPECIFIC_HEAT",
     "GRAVITY",
     "KELVIN",
+    "LATENT_HEAT",
     "STANDARD_PRESSURE",
     "STEFAN_BOLTZMANN",
     "MeltingCurve",
@@ -46,6 +47,7 @@ __all__ = [
     "ratio_of_vapour",
     "relative_humidity",
     "saturation_pressure",
+    "sensible_share",
     "standard_density",
     "vapour_pressure",
 ]
@@ -62,6 +64,9 @@ GRAVITY: Final = _engine.GRAVITY
 """Standard gravity [m/s2]."""
 AIR_SPECIFIC_HEAT: Final = _engine.AIR_SPECIFIC_HEAT
 """Specific heat of dry air [J/(kg K)]."""
+
+LATENT_HEAT: Final = _engine.LATENT_HEAT
+"""Latent heat of vapour [J/kg]."""
 
 _DRIEST: Final = 0.1
 """A lower relative humidity is read as this: it has no dew point of use [%]."""
@@ -296,6 +301,32 @@ def globe_temperature(
     [26.2]
     """
     return _each(_engine.globe_temperature, air, radiant, diameter, emissivity)
+
+
+def sensible_share(activity: npt.ArrayLike, temperature: npt.ArrayLike) -> Floats:
+    """Part of the heat of people that is sensible; they give off the rest as vapour.
+
+    A fit of tables of the ASHRAE Handbook of Fundamentals (EnergyPlus 25.2 Engineering Reference, internal
+    gains, people), written in ``crates/engine/src/physics/occupants.rs``.
+
+    Parameters
+    ----------
+    activity : array_like
+        Heat of the activity of a person. [W]
+    temperature : array_like
+        Temperature of the air. [degC]
+
+    Returns
+    -------
+    ndarray
+        Sensible part, from 0 to 1. [-]
+
+    Examples
+    --------
+    >>> sensible_share(120.0, [20.0, 26.0, 32.0]).round(2).tolist()
+    [0.72, 0.5, 0.21]
+    """
+    return _each(_engine.sensible_share, activity, temperature)
 
 
 def standard_density(altitude: float) -> float:

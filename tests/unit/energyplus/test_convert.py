@@ -20,8 +20,8 @@ from mascarin.energyplus.envelope.constructions import inner_part
 from mascarin.energyplus.envelope.convection import combined as combined_film
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.year import combined, constant, plain, year_of
-from mascarin.energyplus.zones.gains import sensible
 from mascarin.errors import InputError
+from mascarin.physics import sensible_share
 
 BOX = """\
 Version,25.2;
@@ -177,9 +177,10 @@ def test_the_combined_coefficient_follows_its_quadratic() -> None:
 
 def test_sensible_heat_of_people() -> None:
     """Tables of the handbook: 75 W of 130 W at 24 degC (moderate office work), all in the cold."""
-    assert sensible(130.0, 24.0) == pytest.approx(75.0, abs=5.0)
-    assert sensible(130.0, 15.0) > 100.0
-    assert sensible(130.0, 40.0) < 10.0
+    office, cold, hot = 130.0 * sensible_share(130.0, [24.0, 15.0, 40.0])
+    assert office == pytest.approx(75.0, abs=5.0)
+    assert cold > 100.0
+    assert hot < 10.0
 
 
 def test_schedules_and_gains(tmp_path: Path) -> None:

@@ -200,7 +200,7 @@ walk!(ZoneSun by variant {
     Geometry {} plain {},
 });
 walk!(SunShares { faces, lost } plain {});
-walk!(Gain { power, radiative } plain { name, schedule });
+walk!(Gain { power, radiative, activity } plain { name, schedule });
 walk!(Ventilation { air_changes, flow, density } plain { name, schedule, control });
 walk!(IdealLoad { setpoint, capacity, radiative } plain { schedule });
 walk!(SetPoint by variant {
@@ -267,7 +267,7 @@ walk!(Sensor { depth } plain { name, surface });
 
 walk!(Humidity { initial, lewis, zones, buffers, recoveries } plain {});
 walk!(ZoneHumidity { storage, gains, drying, humidifying } plain {});
-walk!(VapourGain { power, rate } plain { name, schedule });
+walk!(VapourGain { power, rate, activity } plain { name, schedule });
 walk!(Drying by variant {
     Controlled { control } plain {},
     Coil { sensible_heat_ratio, temperature } plain {},

@@ -4,6 +4,7 @@ use crate::building::coefficients::{Boundary, Bridge, BridgeEnd, Coefficients};
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::description::{Infiltration, Material};
+use crate::physics::gains::Gain;
 use crate::physics::longwave::Emission;
 
 fn refuse(what: &str, remedy: &str) -> Result<(), EngineError> {
@@ -110,6 +111,12 @@ fn require_linear_zones(
             return refuse(
                 &format!("infiltration of zone {}", definition.name),
                 "keep only its constant part",
+            );
+        }
+        if zone.gains.iter().any(Gain::of_people) {
+            return refuse(
+                &format!("heat of people in zone {}", definition.name),
+                "write the sensible heat as `power`, without `activity`",
             );
         }
         let varies = zone.infiltrated_capacity.as_ref().is_some_and(|capacity| capacity.whole().is_none());

@@ -70,6 +70,7 @@ fn gain(b: &mut Builder, zone: usize, power: f64) {
         name,
         power,
         radiative,
+        activity: None,
         schedule: None,
     });
 }

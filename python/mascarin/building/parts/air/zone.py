@@ -91,18 +91,29 @@ class Gain(Driven):
     >>> heater = Gain(column="P_heater", unit="kW", radiative=0.3)
     >>> heater.course.name
     'P_heater [kW]'
+
+    Three people who sit: all their heat, of which the air gets the sensible part at its temperature.
+
+    >>> float(Gain(power=360, activity=120, radiative=0.3).activity)
+    120.0
     """
 
     NUMBER: ClassVar = "power"
     KIND: ClassVar = "power"
     advice: ClassVar[Mapping[str, str]] = {
-        "latent": "Air is dry here: only sensible heat is simulated. Leave the latent part out of the power.",
+        "latent": "The power is sensible heat. Of people write all heat as 'power:', with 'activity:'.",
+        "persons": "Write the heat of all people as 'power:', and 'activity:' [W] of one of them.",
         "convective": "What is not 'radiative' goes to the air: write 'radiative:' alone.",
     }
 
     power: q.GainPower | None = None
     unit: Literal["W", "kW"] | None = Field(None, description="Unit of the column; none: W")
     radiative: q.Radiative = Number(0.0, source=Remark("not given: all of it goes to the air"), assumed=True)
+    activity: q.Activity | None = Field(
+        None,
+        description="Heat of the activity of a person [W]: the power is then all heat of people, and its "
+        "sensible part at the air temperature counts; none: all of the power counts",
+    )
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the power; none: always 1"
     )
