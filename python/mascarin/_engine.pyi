@@ -44,7 +44,6 @@ __all__ = [
     "moist_air",
     "output_table",
     "saturation_pressure",
-    "sensible_share",
     "standard_density",
     "standard_pressure",
     "vapour_pressure",
@@ -113,9 +112,6 @@ def globe_temperature(air: _Array, radiant: _Array, diameter: _Array, emissivity
 
 def standard_pressure(altitude: _Array) -> _Array:
     """Pressures of the standard atmosphere at altitudes [m]: [Pa]."""
-
-def sensible_share(activity: _Array, temperature: _Array) -> _Array:
-    """Sensible part of the heat of a person [-] at heats of the activity [W] and air temperatures [degC]."""
 
 def standard_density(altitude: float) -> float:
     """Density of dry air of 15 degC at an altitude [m]: [kg/m3]."""

@@ -47,7 +47,6 @@ __all__ = [
     "ratio_of_vapour",
     "relative_humidity",
     "saturation_pressure",
-    "sensible_share",
     "standard_density",
     "vapour_pressure",
 ]
@@ -301,32 +300,6 @@ def globe_temperature(
     [26.2]
     """
     return _each(_engine.globe_temperature, air, radiant, diameter, emissivity)
-
-
-def sensible_share(activity: npt.ArrayLike, temperature: npt.ArrayLike) -> Floats:
-    """Part of the heat of people that is sensible; they give off the rest as vapour.
-
-    A fit of tables of the ASHRAE Handbook of Fundamentals (EnergyPlus 25.2 Engineering Reference, internal
-    gains, people), written in ``crates/engine/src/physics/occupants.rs``.
-
-    Parameters
-    ----------
-    activity : array_like
-        Heat of the activity of a person. [W]
-    temperature : array_like
-        Temperature of the air. [degC]
-
-    Returns
-    -------
-    ndarray
-        Sensible part, from 0 to 1. [-]
-
-    Examples
-    --------
-    >>> sensible_share(120.0, [20.0, 26.0, 32.0]).round(2).tolist()
-    [0.72, 0.5, 0.21]
-    """
-    return _each(_engine.sensible_share, activity, temperature)
 
 
 def standard_density(altitude: float) -> float:

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 import mascarin as mc
 from mascarin.building.parts.site_air import density
 from mascarin.errors import InputError
-from mascarin.physics import AIR_SPECIFIC_HEAT, LATENT_HEAT, sensible_share
+from mascarin.physics import AIR_SPECIFIC_HEAT, LATENT_HEAT
 from mascarin.simulation.preparation.objectives import Mean
 from mascarin.simulation.simulation import Simulation
 from simulation_samples import hours
@@ -27,15 +27,27 @@ def crowded(radiative: float = 0.0, **more: Any) -> Any:
     return box({"room": {"infiltration": 1.0, "gains": {"people": people}}}, **more)
 
 
-def test_the_heat_of_people_by_hand() -> None:
-    """Seated people at 26 degC, term by term from the coefficients of the source."""
-    m, t = 120.0, 26.0
+def sensible_share(m: float, t: float) -> float:
+    """Sensible part of the heat of a person, term by term from the coefficients of the source. [-]"""
     constant = 6.461927 + 0.946892 * m + 0.0000255737 * m * m
     linear = 7.139322 - 0.0627909 * m + 0.0000589172 * m * m
     square = -0.198550 + 0.000940018 * m - 0.00000149532 * m * m
-    assert m * float(sensible_share(m, t)) == pytest.approx(constant + linear * t + square * t * t, rel=1e-12)
-    assert sensible_share(m, [-40.0, -5.0, 45.0]).tolist() == [1.0, 1.0, 0.0]
-    assert np.isnan(sensible_share(m, np.nan))
+    return float(np.clip((constant + linear * t + square * t * t) / m, 0.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("air", "share"), [(-40.0, 1.0), (-5.0, 1.0), (24.0, None), (31.0, None), (45.0, 0.0)]
+)
+def test_the_heat_of_people_in_air_of_a_temperature(air: float, share: float | None) -> None:
+    """The load of a held room: all of their heat in the cold, none in the heat, the formula between."""
+    room: dict[str, Any] = {"infiltration": 1.0, "held": air}
+    people = {"power": POWER, "activity": ACTIVITY}
+    loads = [
+        last(results, "room.heating_load") - last(results, "room.cooling_load")
+        for results in (run(box({"room": room})), run(box({"room": room | {"gains": {"people": people}}})))
+    ]
+    expected = POWER * (sensible_share(ACTIVITY, air) if share is None else share)
+    assert loads[0] - loads[1] == pytest.approx(expected, rel=1e-6, abs=1e-4)
 
 
 @pytest.mark.parametrize("radiative", [0.0, 0.3])
@@ -46,7 +58,7 @@ def test_a_room_settles_where_people_give_what_it_loses(radiative: float) -> Non
     passing = density(building.site) * 50 / 3600 * AIR_SPECIFIC_HEAT
 
     def lack(air: float) -> float:
-        heat = POWER * float(sensible_share(ACTIVITY, air))
+        heat = POWER * sensible_share(ACTIVITY, air)
         # A radiated watt leaves by the wall without the inside film between: the share that stays inside.
         film = 30 * 4.0
         outward = 30 / (0.1 / 0.04 + 1 / 20)
@@ -74,7 +86,7 @@ def test_their_vapour_is_the_other_part() -> None:
     before = last(outdoors, "room.humidity_ratio")
     latent = dry_air * (ratio - before) * LATENT_HEAT
     sensible = last(outdoors, "room.heating_load") - last(results, "room.heating_load")
-    share = float(sensible_share(ACTIVITY, 24.0))
+    share = sensible_share(ACTIVITY, 24.0)
     assert sensible == pytest.approx(POWER * share, rel=1e-6)
     assert latent == pytest.approx(POWER * (1.0 - share), rel=2e-3)
 

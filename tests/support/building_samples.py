@@ -144,7 +144,7 @@ zones:
     infiltration: {constant: 0.2, temperature: 0.01, wind: 0.02}
     longwave: radiosity
     gains:
-      people: {power: 100, radiative: 0.5, schedule: day}
+      people: {power: 100, activity: 110, radiative: 0.5, schedule: day}
       lamp: {power: 20}
     ventilation:
       fan: {air_changes: 1.5, schedule: day}
@@ -519,7 +519,7 @@ SECTIONS: dict[str, dict[str, Any]] = {
             "room": {
                 "storage": 3,
                 "gains": {
-                    "people": {"power": 8, "schedule": "day"},
+                    "people": {"power": 8, "activity": 130, "schedule": "day"},
                     "shower": {"rate": 1e-7},
                     "plants": {
                         "column": "T_out",

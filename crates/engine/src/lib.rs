@@ -33,7 +33,7 @@ mod weather;
 pub use balance::{energy_balance, vapour};
 pub use building::{coefficients, plan};
 pub use input::{description, forcing, values};
-pub use physics::{constants, globe, occupants, pcm, psychrometrics, standard_air};
+pub use physics::{constants, globe, pcm, psychrometrics, standard_air};
 pub use step::control::RunControl;
 pub use step::{Counters, Scheme, state};
 

@@ -2,7 +2,7 @@
 
 use mascarin_engine::description::MeltingCurve;
 use mascarin_engine::pcm::LiquidFraction;
-use mascarin_engine::{constants, globe, occupants, psychrometrics as air, standard_air};
+use mascarin_engine::{constants, globe, psychrometrics as air, standard_air};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -161,14 +161,6 @@ fn melting_reach(curve: &str, values: Given<'_>) -> PyResult<(f64, f64)> {
     Ok((low, high))
 }
 
-/// Part of the heat of a person that is sensible [-], at heats of the activity [W] and temperatures of the air [degC].
-#[pyfunction]
-fn sensible_share<'py>(py: Python<'py>, activity: Given<'py>, temperature: Given<'py>) -> Found<'py> {
-    each(py, [activity, temperature], |[activity, temperature]| {
-        occupants::sensible_share(activity, temperature)
-    })
-}
-
 /// Constants by name.
 const CONSTANTS: [(&str, f64); 9] = [
     ("STEFAN_BOLTZMANN", constants::SIGMA),
@@ -198,6 +190,5 @@ pub fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(leakage_air_changes, module)?)?;
     module.add_function(wrap_pyfunction!(liquid_fraction, module)?)?;
     module.add_function(wrap_pyfunction!(melting_reach, module)?)?;
-    module.add_function(wrap_pyfunction!(sensible_share, module)?)?;
     CONSTANTS.iter().try_for_each(|&(name, value)| module.add(name, value))
 }

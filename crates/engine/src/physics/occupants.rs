@@ -18,8 +18,7 @@ const SENSIBLE: [[f64; 3]; 3] = [
 ];
 
 /// Part of the heat of a person that is sensible [-]: of the heat of the activity [W] and the temperature of the air [degC].
-#[must_use]
-pub fn sensible_share<S: Real>(activity: S, air: S) -> S {
+pub(crate) fn sensible_share<S: Real>(activity: S, air: S) -> S {
     let [constant, linear, square] =
         SENSIBLE.map(|[a, b, c]| S::constant(a) + activity * (S::constant(b) + activity.scale(c)));
     // The coefficient of the square is negative at each activity.

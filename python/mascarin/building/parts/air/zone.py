@@ -85,23 +85,18 @@ class Gain(Driven):
 
     Examples
     --------
-    >>> people = Gain(power=200, radiative=0.5, schedule="presence")
-    >>> float(people.radiative)
-    0.5
+    >>> people = Gain(power=240, activity=120, radiative=0.5, schedule="presence")
+    >>> float(people.activity)
+    120.0
     >>> heater = Gain(column="P_heater", unit="kW", radiative=0.3)
     >>> heater.course.name
     'P_heater [kW]'
-
-    Three people who sit: all their heat, of which the air gets the sensible part at its temperature.
-
-    >>> float(Gain(power=360, activity=120, radiative=0.3).activity)
-    120.0
     """
 
     NUMBER: ClassVar = "power"
     KIND: ClassVar = "power"
     advice: ClassVar[Mapping[str, str]] = {
-        "latent": "The power is sensible heat. Of people write all heat as 'power:', with 'activity:'.",
+        "latent": "The power is sensible heat; of people write all heat as 'power:', with 'activity:'.",
         "persons": "Write the heat of all people as 'power:', and 'activity:' [W] of one of them.",
         "convective": "What is not 'radiative' goes to the air: write 'radiative:' alone.",
     }
