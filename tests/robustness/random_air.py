@@ -323,6 +323,13 @@ def controlled_flows(tree: Json) -> None:
             entry["infiltration"] = {**infiltration, **keys}
         for flow in entry.get("ventilation", {}).values():
             flow["control"] = "control_1"
+    for path in tree.get("air_paths", {}).values():
+        if not path.get("one_way"):
+            path["control"] = "control_1"
+    control = controls_by_name["control_1"]
+    others = sorted(set(tree["zones"]) - {control["zone"]})
+    if "difference" in control and others:
+        control["reference_zone"] = others[0]
 
 
 def operative_set_points(tree: Json) -> None:

@@ -207,9 +207,9 @@ walk!(SetPoint by variant {
     Constant { temperature } plain {},
     Scheduled {} plain { channel },
 });
-walk!(AirPath { flow, density } plain { name, between, schedule });
+walk!(AirPath { flow, density } plain { name, between, schedule, control });
 walk!(DirectedFlow { flow, density } plain { name, from, to, schedule });
-walk!(Door { width, height, discharge, open } plain { name, between, schedule });
+walk!(Door { width, height, discharge, open } plain { name, between, schedule, control });
 walk!(UnitFlow { flow, density } plain { zone, schedule });
 walk!(VentilationUnit { supply, exhaust, temperature, recovery } plain { name });
 walk!(ThermalBridge { coefficient, size, to } plain { name, zone });
@@ -221,7 +221,7 @@ walk!(WindPressure by variant {
     Table {} plain { coefficients },
 });
 walk!(VentControl { indoor, outdoor, indoor_below, outdoor_below, difference, wind, rain, minimum_open_time,
-    minimum_closed_time } plain { name, zone });
+    minimum_closed_time } plain { name, zone, reference_zone });
 walk!(Band { open, close } plain {});
 walk!(ChannelBand { band } plain { channel });
 

@@ -49,6 +49,7 @@ fn rooms(power: f64) -> Description {
         flow,
         schedule: None,
         density: None,
+        control: None,
     });
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.2));
     d

@@ -55,6 +55,7 @@ pub fn conditioned(gamma: f64) -> Description {
         flow: number(&mut d, "hatch.flow", 0.003),
         schedule: None,
         density: None,
+        control: None,
     };
     d.air_paths.push(path);
     let opening = Opening {

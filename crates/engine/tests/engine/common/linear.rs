@@ -87,6 +87,7 @@ pub fn linear_cell() -> Description {
         flow,
         schedule: None,
         density: None,
+        control: None,
     });
     d
 }

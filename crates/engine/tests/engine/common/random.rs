@@ -629,6 +629,7 @@ impl Maker<'_> {
                     flow,
                     schedule,
                     density: None,
+                    control: None,
                 });
             }
         }
