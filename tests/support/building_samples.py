@@ -432,7 +432,7 @@ SECTIONS: dict[str, dict[str, Any]] = {
         },
     },
     "air_paths": {
-        "door": {"between": ["room", "attic"], "door": {"width": 0.9, "height": 2}, "control": "warmth"},
+        "door": {"between": ["room", "attic"], "door": {"width": 0.9, "height": 2}, "control": "warmer"},
         "overflow": {"between": ["room", "attic"], "column": "T_out", "one_way": True},
     },
     "ventilation_units": {
@@ -483,9 +483,9 @@ SECTIONS: dict[str, dict[str, Any]] = {
         "coolness": {
             "zone": "attic",
             "difference": _band(0.2, -0.1, 0.08),
-            "reference_zone": "room",
             "minimum_open_time": {"value": 20, "range": [0, 600]},
         },
+        "warmer": {"zone": "attic", "reference_zone": "room", "difference": _band(0.003, -0.003, 0.004)},
         "mild": {"zone": "room", "outdoor": _band(22, 21, 2)},
         "calm": {
             "zone": "attic",

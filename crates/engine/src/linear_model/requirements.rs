@@ -55,7 +55,7 @@ pub(super) fn require_linear(
     }
     let flows = coefficients.mechanical_air.directed.iter().zip(&plan.description.directed_flows);
     if let Some((_, flow)) = flows.into_iter().find(|(flow, _)| flow.whole().is_none()) {
-        return refuse(&format!("air path {}", flow.name), "remove schedule, control, varying density");
+        return refuse(&format!("air path {}", flow.name), "remove its schedule, and a density that varies");
     }
     let bridges = coefficients.bridges.iter().zip(&plan.description.thermal_bridges);
     let imposed = |bridge: &Bridge<f64>| matches!(bridge.to, BridgeEnd::Imposed(_));
@@ -67,7 +67,7 @@ pub(super) fn require_linear(
     }
     let paths = coefficients.paths.iter().zip(&plan.description.air_paths);
     if let Some((_, path)) = paths.into_iter().find(|(path, _)| path.whole().is_none()) {
-        return refuse(&format!("air path {}", path.name), "remove its schedule, and a density that varies");
+        return refuse(&format!("air path {}", path.name), "remove schedule, control, varying density");
     }
     Ok(())
 }
