@@ -32,8 +32,6 @@ import numpy as np
 import pandas as pd
 from energyplus_small import AIR, DATA, SMALL
 
-from mascarin.energyplus.zones.gains import sensible
-
 TABLE = SMALL.parent.parent / "python" / "mascarin" / "energyplus" / "model" / "effects.csv"
 #: Loads with those of the outdoor air that the system brings.
 LOADS = tuple(
@@ -238,34 +236,6 @@ def measured(case: Case, room: str, command: str) -> tuple[float, float]:
 # ------------------------------------------------------------------ the kinds
 
 
-def _people(**more: Any) -> Change:
-    fields = {
-        "zone_or_zonelist_or_space_or_spacelist_name": "room", "number_of_people_schedule_name": "on",
-        "number_of_people_calculation_method": "People", "number_of_people": 2,
-        "fraction_radiant": 0.3, "activity_level_schedule_name": "activity",
-    }  # fmt: skip
-    return together(constant("activity", 120.0), puts("People", **fields, **more))
-
-
-def _people_by_season(model: Model) -> None:
-    """People with the sensible heat of the set points by season; of 23 degC in a room without loads."""
-    seasons = {"02/28": 20.0, "05/31": 23.0, "08/31": 26.0, "11/30": 23.0, "12/31": 20.0}
-    if IDEAL not in model:
-        seasons = {"12/31": 23.0}
-    for air in sorted(set(seasons.values())):
-        days = [
-            text
-            for until, level in seasons.items()
-            for text in (f"Through: {until}", "For: AllDays", "Until: 24:00", float(level == air))
-        ]
-        schedule = {"schedule_type_limits_name": "any", "data": [{"field": text} for text in days]}
-        put(model, "Schedule:Compact", **{f"at {air:g}": schedule})
-        _people(sensible_heat_fraction=sensible(120.0, air) / 120.0)(model)
-        model["People"][f"at {air:g}"] = model["People"].pop("added") | {
-            "number_of_people_schedule_name": f"at {air:g}"
-        }
-
-
 def _lamps(**more: Any) -> Change:
     fields = {
         "zone_or_zonelist_or_space_or_spacelist_name": "room", "schedule_name": "day",
@@ -423,7 +393,6 @@ CASES = {
         "SurfaceProperty:SurroundingSurfaces", "*", of_file("surrounding_surfaces")
     ),
     "ground_hidden": Case("", "a view factor to the ground*", of_file("ground_hidden")),
-    "people": Case("People", "sensible heat*", _people(), without=_people_by_season),
     "visible": Case(
         "Lights", "visible radiation",
         _lamps(fraction_radiant=0.4, fraction_visible=0.2), without=_lamps(fraction_radiant=0.6),

@@ -31,6 +31,7 @@ __all__ = [
     "AIR_SPECIFIC_HEAT",
     "GRAVITY",
     "KELVIN",
+    "LATENT_HEAT",
     "STANDARD_PRESSURE",
     "STEFAN_BOLTZMANN",
     "MeltingCurve",
@@ -62,6 +63,9 @@ GRAVITY: Final = _engine.GRAVITY
 """Standard gravity [m/s2]."""
 AIR_SPECIFIC_HEAT: Final = _engine.AIR_SPECIFIC_HEAT
 """Specific heat of dry air [J/(kg K)]."""
+
+LATENT_HEAT: Final = _engine.LATENT_HEAT
+"""Latent heat of vapour [J/kg]."""
 
 _DRIEST: Final = 0.1
 """A lower relative humidity is read as this: it has no dew point of use [%]."""

@@ -80,6 +80,11 @@ def _density(draw: Draw) -> Json:
     return {"density": draw.of("site", "outdoors", "zone", 1.2)} if draw.chance(0.3) else {}
 
 
+def _people(source: Json, least: float) -> Json:
+    """People where a power is large, without a draw of their own; other buildings stay the same."""
+    return {"activity": 70.0 + source["power"] % 400.0} if source.get("power", 0.0) > least else {}
+
+
 def _gain(draw: Draw, schedules: Schedules) -> Json:
     tree: Json = {} if draw.chance(0.4) else {"radiative": draw.of(0.0, 1.0, draw.number(0.0, 1.0))}
     if draw.chance(0.2):
@@ -89,6 +94,8 @@ def _gain(draw: Draw, schedules: Schedules) -> Json:
             tree["factor"] = draw.number(-1.0, 1.5)
     else:
         tree["power"] = draw.of(draw.log(1.0, 4000.0), draw.number(-300.0, 300.0))
+    if "radiative" in tree:
+        tree |= _people(tree, 300.0)
     return tree | schedules.maybe("on", 0.5)
 
 
@@ -316,6 +323,13 @@ def controlled_flows(tree: Json) -> None:
             entry["infiltration"] = {**infiltration, **keys}
         for flow in entry.get("ventilation", {}).values():
             flow["control"] = "control_1"
+    for path in tree.get("air_paths", {}).values():
+        if not path.get("one_way"):
+            path["control"] = "control_1"
+    control = controls_by_name["control_1"]
+    others = sorted(set(tree["zones"]) - {control["zone"]})
+    if "difference" in control and others:
+        control["reference_zone"] = others[0]
 
 
 def operative_set_points(tree: Json) -> None:
@@ -366,6 +380,7 @@ def _zone_humidity(draw: Draw, schedules: Schedules, *, cooled: bool) -> Json:
         )
         if "column" in source and draw.chance(0.4):
             source["factor"] = draw.number(0.0, 2.0)
+        source |= _people(source, 500.0)
         section.setdefault("gains", {})[name] = source | schedules.maybe("on", 0.5)
     if draw.chance(0.4):
         coil: Json = {"sensible_heat_ratio": draw.number(0.4, 1.0)}

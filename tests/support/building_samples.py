@@ -144,7 +144,7 @@ zones:
     infiltration: {constant: 0.2, temperature: 0.01, wind: 0.02}
     longwave: radiosity
     gains:
-      people: {power: 100, radiative: 0.5, schedule: day}
+      people: {power: 100, activity: 110, radiative: 0.5, schedule: day}
       lamp: {power: 20}
     ventilation:
       fan: {air_changes: 1.5, schedule: day}
@@ -432,7 +432,7 @@ SECTIONS: dict[str, dict[str, Any]] = {
         },
     },
     "air_paths": {
-        "door": {"between": ["room", "attic"], "door": {"width": 0.9, "height": 2}},
+        "door": {"between": ["room", "attic"], "door": {"width": 0.9, "height": 2}, "control": "warmer"},
         "overflow": {"between": ["room", "attic"], "column": "T_out", "one_way": True},
     },
     "ventilation_units": {
@@ -485,6 +485,7 @@ SECTIONS: dict[str, dict[str, Any]] = {
             "difference": _band(0.2, -0.1, 0.08),
             "minimum_open_time": {"value": 20, "range": [0, 600]},
         },
+        "warmer": {"zone": "attic", "reference_zone": "room", "difference": _band(0.003, -0.003, 0.004)},
         "mild": {"zone": "room", "outdoor": _band(22, 21, 2)},
         "calm": {
             "zone": "attic",
@@ -519,7 +520,7 @@ SECTIONS: dict[str, dict[str, Any]] = {
             "room": {
                 "storage": 3,
                 "gains": {
-                    "people": {"power": 8, "schedule": "day"},
+                    "people": {"power": 8, "activity": 130, "schedule": "day"},
                     "shower": {"rate": 1e-7},
                     "plants": {
                         "column": "T_out",

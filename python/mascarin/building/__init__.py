@@ -18,6 +18,7 @@ from mascarin.building.ground_slab import EdgeInsulation, Soil
 from mascarin.building.json_schemas import json_schema
 from mascarin.building.outputs.output import Output
 from mascarin.building.parameters.parameter import Parameter
+from mascarin.building.parts.air.air_path import AirPath, Door, Opening
 from mascarin.building.parts.air.humidity import (
     CoolingCoil,
     Humidistat,
@@ -53,8 +54,6 @@ from mascarin.building.parts.air.vent import (
 )
 from mascarin.building.parts.air.ventilation import UnitFlow, VentilationUnit
 from mascarin.building.parts.air.zone import (
-    AirPath,
-    Door,
     EvenSun,
     FloorSun,
     Gain,
@@ -62,7 +61,6 @@ from mascarin.building.parts.air.zone import (
     IdealLoads,
     Infiltration,
     MassShares,
-    Opening,
     SunShares,
     TextInfiltration,
     TracedSun,

@@ -28,7 +28,6 @@ from mascarin.energyplus.unsupported import note_unsupported
 from mascarin.energyplus.zones.airflow import describe_air
 from mascarin.energyplus.zones.conditioning import (
     describe_conditioning,
-    seasonal_temperatures,
     usual_temperatures,
 )
 from mascarin.energyplus.zones.enclosures import describe_enclosures
@@ -129,7 +128,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     describe_openings(context, inside, coefficients, surfaces)
     describe_shades(context, all_surfaces, inside)
     air = usual_temperatures(context, zones)
-    describe_gains(context, zones, seasonal_temperatures(context, zones))
+    describe_gains(context, zones)
     describe_water(context, zones, air)
     describe_air(context, zones, all_surfaces, inside, air)
     by_name = {surface.item.name.casefold(): surface for surface in all_surfaces}

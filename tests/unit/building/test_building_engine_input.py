@@ -27,6 +27,7 @@ STRUCTURAL = {
     "nodes",
     "construction",
     "zone",
+    "reference_zone",
     "surface",
     "channel",
     "irradiance",

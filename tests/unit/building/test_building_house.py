@@ -117,7 +117,7 @@ WRONG = {
         "    held: {column: T_bath}", "    held: {column: T_bath}\n    heating: {setpoint: 20}",
         ("house.yaml:14", "held and heating"),
     ),
-    "a latent share": ("radiative: 0.3", "latent: 0.3", ("house.yaml:9", "only sensible heat is simulated")),
+    "a latent share": ("radiative: 0.3", "latent: 0.3", ("house.yaml:9", "power is sensible heat")),
     "a schedule beside a column": (
         "{column: P_living, radiative: 0.3}",
         "{column: P_living, schedule: work}",

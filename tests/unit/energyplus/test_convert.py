@@ -20,7 +20,6 @@ from mascarin.energyplus.envelope.constructions import inner_part
 from mascarin.energyplus.envelope.convection import combined as combined_film
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.year import combined, constant, plain, year_of
-from mascarin.energyplus.zones.gains import sensible
 from mascarin.errors import InputError
 
 BOX = """\
@@ -173,13 +172,6 @@ def test_the_combined_coefficient_follows_its_quadratic() -> None:
         assert law["a"] + law["c"] * wind ** law["m"] == pytest.approx(10.22 + 3.1 * wind, rel=1e-3)
     bent = combined_film("medium_smooth")["upward"]
     assert bent["a"] + bent["c"] * 5.0 ** bent["m"] == pytest.approx(8.23 + 20.0 - 0.057 * 25.0, rel=0.01)
-
-
-def test_sensible_heat_of_people() -> None:
-    """Tables of the handbook: 75 W of 130 W at 24 degC (moderate office work), all in the cold."""
-    assert sensible(130.0, 24.0) == pytest.approx(75.0, abs=5.0)
-    assert sensible(130.0, 15.0) > 100.0
-    assert sensible(130.0, 40.0) < 10.0
 
 
 def test_schedules_and_gains(tmp_path: Path) -> None:

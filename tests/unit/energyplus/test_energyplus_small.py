@@ -58,7 +58,6 @@ LISTED = {
     "inside_astm": "SurfaceConvectionAlgorithm:Inside",
     "movable_insulation": "SurfaceControl:MovableInsulation",
     "oa_mixing": "ZoneMixing",
-    "same_name_gains": "People",
     "surrounding_surfaces": "SurfaceProperty:SurroundingSurfaces",
 }
 #: Models with a measured effect: the class, and the model without the object.

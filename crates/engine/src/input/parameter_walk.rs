@@ -200,16 +200,16 @@ walk!(ZoneSun by variant {
     Geometry {} plain {},
 });
 walk!(SunShares { faces, lost } plain {});
-walk!(Gain { power, radiative } plain { name, schedule });
+walk!(Gain { power, radiative, activity } plain { name, schedule });
 walk!(Ventilation { air_changes, flow, density } plain { name, schedule, control });
 walk!(IdealLoad { setpoint, capacity, radiative } plain { schedule });
 walk!(SetPoint by variant {
     Constant { temperature } plain {},
     Scheduled {} plain { channel },
 });
-walk!(AirPath { flow, density } plain { name, between, schedule });
+walk!(AirPath { flow, density } plain { name, between, schedule, control });
 walk!(DirectedFlow { flow, density } plain { name, from, to, schedule });
-walk!(Door { width, height, discharge, open } plain { name, between, schedule });
+walk!(Door { width, height, discharge, open } plain { name, between, schedule, control });
 walk!(UnitFlow { flow, density } plain { zone, schedule });
 walk!(VentilationUnit { supply, exhaust, temperature, recovery } plain { name });
 walk!(ThermalBridge { coefficient, size, to } plain { name, zone });
@@ -221,7 +221,7 @@ walk!(WindPressure by variant {
     Table {} plain { coefficients },
 });
 walk!(VentControl { indoor, outdoor, indoor_below, outdoor_below, difference, wind, rain, minimum_open_time,
-    minimum_closed_time } plain { name, zone });
+    minimum_closed_time } plain { name, zone, reference_zone });
 walk!(Band { open, close } plain {});
 walk!(ChannelBand { band } plain { channel });
 
@@ -267,7 +267,7 @@ walk!(Sensor { depth } plain { name, surface });
 
 walk!(Humidity { initial, lewis, zones, buffers, recoveries } plain {});
 walk!(ZoneHumidity { storage, gains, drying, humidifying } plain {});
-walk!(VapourGain { power, rate } plain { name, schedule });
+walk!(VapourGain { power, rate, activity } plain { name, schedule });
 walk!(Drying by variant {
     Controlled { control } plain {},
     Coil { sensible_heat_ratio, temperature } plain {},

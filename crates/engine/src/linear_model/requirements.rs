@@ -4,6 +4,7 @@ use crate::building::coefficients::{Boundary, Bridge, BridgeEnd, Coefficients};
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::description::{Infiltration, Material};
+use crate::physics::gains::Gain;
 use crate::physics::longwave::Emission;
 
 fn refuse(what: &str, remedy: &str) -> Result<(), EngineError> {
@@ -66,7 +67,7 @@ pub(super) fn require_linear(
     }
     let paths = coefficients.paths.iter().zip(&plan.description.air_paths);
     if let Some((_, path)) = paths.into_iter().find(|(path, _)| path.whole().is_none()) {
-        return refuse(&format!("air path {}", path.name), "remove its schedule, and a density that varies");
+        return refuse(&format!("air path {}", path.name), "remove schedule, control, varying density");
     }
     Ok(())
 }
@@ -110,6 +111,12 @@ fn require_linear_zones(
             return refuse(
                 &format!("infiltration of zone {}", definition.name),
                 "keep only its constant part",
+            );
+        }
+        if zone.gains.iter().any(Gain::of_people) {
+            return refuse(
+                &format!("heat of people in zone {}", definition.name),
+                "write the sensible heat as `power`, without `activity`",
             );
         }
         let varies = zone.infiltrated_capacity.as_ref().is_some_and(|capacity| capacity.whole().is_none());

@@ -40,7 +40,7 @@ fn two_capacities() {
         ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
     };
     let (power, radiative) = (number("power", 100.0), number("radiative", RADIATIVE));
-    let gain = Gain { name: "light".to_owned(), power, radiative, schedule: None };
+    let gain = Gain { name: "light".to_owned(), power, radiative, activity: None, schedule: None };
     description.zones[0].gains.push(gain);
     let plan = Plan::new(description).unwrap();
     let numbers = values(&plan);

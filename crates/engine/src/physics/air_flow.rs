@@ -41,6 +41,8 @@ pub struct Path<S> {
     /// The zones.
     pub between: [usize; 2],
     flow: AirFlow<S>,
+    /// Control that starts and stops it.
+    pub(crate) control: Option<usize>,
 }
 
 impl<S: Real> Path<S> {
@@ -48,7 +50,7 @@ impl<S: Real> Path<S> {
     pub(crate) fn new(path: &description::AirPath, values: &Values<'_, S>, site: &SiteAir<S>) -> Self {
         let density = (path.density.as_ref(), path.between);
         let flow = AirFlow::new(values.get(path.flow) * site.heat, path.schedule, density, values, site);
-        Self { between: path.between, flow }
+        Self { between: path.between, flow, control: path.control }
     }
 
     /// Heat carried per degree between the zones [W/K].
@@ -65,7 +67,7 @@ impl<S: Real> Path<S> {
 
     /// Heat carried per degree, where nothing changes it [W/K].
     pub(crate) fn whole(&self) -> Option<S> {
-        self.flow.whole()
+        if self.control.is_none() { self.flow.whole() } else { None }
     }
 }
 

@@ -28,6 +28,8 @@ pub struct Door<S> {
     whole: S,
     open: S,
     schedule: Schedule,
+    /// Control that opens and closes it.
+    pub(crate) control: Option<usize>,
 }
 
 impl<S: Real> Door<S> {
@@ -42,6 +44,7 @@ impl<S: Real> Door<S> {
             whole: heat * flow,
             open: values.get(door.open),
             schedule: Schedule::new(door.schedule),
+            control: door.control,
         }
     }
 
@@ -92,6 +95,7 @@ mod tests {
             discharge: id(2),
             open: id(3),
             schedule: None,
+            control: None,
         };
         let whole = |open: f64| Door::new(&door, &Values::new(&[0.9, 2.0, 0.65, open]), 1200.0).at(&[]);
         let expected = 1200.0 * 0.65 * 1.8 / 3.0 * (9.806_65_f64 * 2.0 * 2.0 / 293.15).sqrt() * 2.0;

@@ -4,6 +4,7 @@ use crate::input::description;
 use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, scheduled};
 use crate::input::values::Values;
 use crate::number::real::Real;
+use crate::physics::occupants;
 
 /// Heat from people, light and machines.
 #[derive(Debug, Clone)]
@@ -14,6 +15,8 @@ pub struct Gain<S> {
     radiant: S,
     /// Part radiated [-].
     radiative: S,
+    /// Heat of the activity of a person, of whose heat only the sensible part counts [W]; none: all of it does.
+    activity: Option<S>,
     schedule: Schedule,
 }
 
@@ -26,6 +29,7 @@ impl<S: Real> Gain<S> {
             convective: power * (S::one() - radiative),
             radiant: power * radiative,
             radiative,
+            activity: gain.activity.map(|id| values.get(id)),
             schedule: Schedule::new(gain.schedule),
         }
     }
@@ -35,10 +39,23 @@ impl<S: Real> Gain<S> {
         [S::one() - self.radiative, self.radiative]
     }
 
-    /// Heat given to the air and heat radiated to the surfaces in a forcing row [W].
+    /// Whether it changes with the temperature of the air.
+    pub(crate) fn of_people(&self) -> bool {
+        self.activity.is_some()
+    }
+
+    /// Heat given to the air and heat radiated to the surfaces in a forcing row [W]; `air`: of the zone at the start of the step
+    /// [degC].
     #[inline(always)]
-    pub(crate) fn at(&self, row: &[f64]) -> [S; 2] {
-        [scheduled(self.convective, self.schedule, row), scheduled(self.radiant, self.schedule, row)]
+    pub(crate) fn at(&self, row: &[f64], air: S) -> [S; 2] {
+        let parts = [self.convective, self.radiant].map(|part| scheduled(part, self.schedule, row));
+        match self.activity {
+            Some(activity) => {
+                let share = occupants::sensible_share(activity, air);
+                parts.map(|part| part * share)
+            }
+            None => parts,
+        }
     }
 }
 

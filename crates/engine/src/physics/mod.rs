@@ -19,6 +19,7 @@ pub mod law_row;
 pub mod leakage;
 pub mod longwave;
 pub mod mechanical_air;
+pub(crate) mod occupants;
 pub mod optics;
 pub mod pcm;
 pub mod psychrometrics;

@@ -76,6 +76,13 @@ fn find_vent_flows<S: Real>(
     for (at, zone) in conditions.zones.iter_mut().zip(&numbers.zones) {
         at.control(zone, &state.opened);
     }
+    let flows = conditions.paths.iter_mut().zip(numbers.paths.iter().map(|path| path.control));
+    let doors = conditions.doors.iter_mut().zip(numbers.doors.iter().map(|door| door.control));
+    for (flow, control) in flows.chain(doors) {
+        if let Some(control) = control {
+            *flow = *flow * state.opened[control];
+        }
+    }
     conditions.vents.control(&numbers.vents, &state.opened);
     if let Some(network) = network {
         S::vectorised(

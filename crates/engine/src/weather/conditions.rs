@@ -39,6 +39,8 @@ pub struct Conditions<S: Real> {
     pub(crate) humidity: Option<HumidityConditions<S>>,
     /// Densities of the air that flows are volumes of.
     pub(crate) densities: AirDensities<S>,
+    /// Airs of the zones at the start of the step [degC]; empty where no people change their heat with them.
+    airs: Vec<S>,
     /// Heat released between layers of walls.
     pub(crate) heat_sources: Vec<SourceConditions<S>>,
     /// Temperature at the other end of each thermal bridge; none where that is a zone [degC].
@@ -83,6 +85,7 @@ impl<S: Real> Conditions<S> {
             }),
             heat_sources: vec![SourceConditions::none(); coefficients.heat_sources.len()],
             densities: AirDensities::of_site(plan.zones.len()),
+            airs: if coefficients.has_people { vec![zero; plan.zones.len()] } else { Vec::new() },
             bridges: coefficients
                 .bridges
                 .iter()
@@ -191,6 +194,8 @@ impl<S: Real> Conditions<S> {
         if let Some(site) = &coefficients.densities {
             self.densities.update(site, now.row, airs);
         }
+        let people = self.airs.len();
+        self.airs.copy_from_slice(&airs[..people]);
     }
 
     /// Evaluates the weather at an instant.
@@ -223,8 +228,9 @@ impl<S: Real> Conditions<S> {
         self.wind = S::constant(now.wind.speed);
         self.sun.irradiate(plan, coefficients, weather_index, now);
         self.update_surfaces(coefficients, weather_index, now);
-        for (at, zone) in self.zones.iter_mut().zip(&coefficients.zones) {
-            at.update(zone, now.row, &self.densities);
+        for (z, (at, zone)) in self.zones.iter_mut().zip(&coefficients.zones).enumerate() {
+            let air = self.airs.get(z).copied().unwrap_or_else(S::zero);
+            at.update(zone, now.row, &self.densities, air);
         }
         for (at, path) in self.paths.iter_mut().zip(&coefficients.paths) {
             *at = path.conductance(now.row, &self.densities);
@@ -262,7 +268,7 @@ impl<S: Real> Conditions<S> {
             self.vents.update(&coefficients.vents, now.row);
         }
         if let (Some(at), Some(humidity)) = (&mut self.humidity, &coefficients.humidity) {
-            at.update(humidity, (&coefficients.mechanical_air.units, &self.densities), now);
+            at.update(humidity, (&coefficients.mechanical_air.units, &self.densities), now, &self.airs);
         }
         for (at, source) in self.heat_sources.iter_mut().zip(&coefficients.heat_sources) {
             at.update(source, now.row);

@@ -97,12 +97,13 @@ impl<S: Real> HumidityConditions<S> {
         humidity: &HumidityCoefficients<S>,
         (units, densities): (&[Unit<S>], &AirDensities<S>),
         now: &Instant<'_>,
+        airs: &[S],
     ) {
         let row = now.row;
         self.pressure = humidity.pressure_in(row);
         self.outdoor = humidity_ratio(S::constant(now.vapour), self.pressure);
-        for (at, zone) in self.zones.iter_mut().zip(&humidity.zones) {
-            at.gain = zone.gain(row);
+        for (z, (at, zone)) in self.zones.iter_mut().zip(&humidity.zones).enumerate() {
+            at.gain = zone.gain(row, airs.get(z).copied().unwrap_or_else(S::zero));
             if !zone.has_plants() {
                 continue;
             }

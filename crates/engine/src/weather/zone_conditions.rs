@@ -67,12 +67,18 @@ impl<S: Real> ZoneConditions<S> {
         }
     }
 
-    /// Evaluates gains, ventilation and openings in a forcing row.
+    /// Evaluates gains, ventilation and openings in a forcing row; `air`: of the zone at the start of the step [degC].
     #[inline(always)]
-    pub(crate) fn update(&mut self, zone: &ZoneCoefficients<S>, row: &[f64], densities: &AirDensities<S>) {
+    pub(crate) fn update(
+        &mut self,
+        zone: &ZoneCoefficients<S>,
+        row: &[f64],
+        densities: &AirDensities<S>,
+        air: S,
+    ) {
         (self.convective, self.radiant) = (S::zero(), S::zero());
         for gain in &zone.gains {
-            let [convective, radiant] = gain.at(row);
+            let [convective, radiant] = gain.at(row, air);
             self.convective += convective;
             self.radiant += radiant;
         }
@@ -175,7 +181,7 @@ mod tests {
         let (power, radiative, air_changes) = (number(100.0), number(0.4), number(2.0));
         let name = "number".to_owned();
         let zone = &mut description.zones[0];
-        zone.gains = vec![Gain { name: name.clone(), power, radiative, schedule: None }];
+        zone.gains = vec![Gain { name: name.clone(), power, radiative, activity: None, schedule: None }];
         zone.ventilation = vec![Ventilation {
             name: name.clone(),
             air_changes: Some(air_changes),
@@ -195,7 +201,7 @@ mod tests {
         let mut at = ZoneConditions::new(&zone);
         let mut row = [0.0; CLIMATE_CHANNELS + 1];
         row[CLIMATE_CHANNELS] = 0.5;
-        at.update(&zone, &row, &AirDensities::of_site(1));
+        at.update(&zone, &row, &AirDensities::of_site(1), 20.0);
         assert_eq!((at.convective, at.radiant), (60.0, 40.0));
         assert!((at.ventilation / (zone.air_capacity / 3600.0) - 1.0).abs() < 1e-14);
         // 0.5 1/h of infiltration and 1 1/h of ventilation.

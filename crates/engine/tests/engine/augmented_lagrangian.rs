@@ -70,6 +70,7 @@ fn row(rooms: usize, flow: f64) -> Row {
             flow: flow_number,
             schedule: None,
             density: None,
+            control: None,
         };
         d.air_paths.push(path);
     }

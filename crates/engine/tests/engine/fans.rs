@@ -70,6 +70,7 @@ fn gain(b: &mut Builder, zone: usize, power: f64) {
         name,
         power,
         radiative,
+        activity: None,
         schedule: None,
     });
 }
@@ -169,7 +170,16 @@ fn a_door_carries_heat() {
     let mut number = |value| b.number("door", value);
     let [width, height, discharge, open] = [0.9, 2.0, 0.65, 0.5].map(&mut number);
     let name = "door".to_owned();
-    b.description.doors.push(Door { name, between: [0, 1], width, height, discharge, open, schedule: None });
+    b.description.doors.push(Door {
+        name,
+        between: [0, 1],
+        width,
+        height,
+        discharge,
+        open,
+        schedule: None,
+        control: None,
+    });
     let (air, _) = steady(b.description);
     let whole = HEAT * 0.65 * 0.45 * 2.0 / 3.0 * (9.806_65_f64 * 2.0 / 293.15).sqrt();
     let difference = Real::powf(300.0 / whole, 2.0 / 3.0);
@@ -215,6 +225,7 @@ fn all_at_once() -> Plan {
         discharge: number("door.discharge", 0.5),
         open: number("door.open", 0.3),
         schedule: None,
+        control: None,
     };
     let numbers = [
         ("n50", number("leak.n50", 3.0)),

@@ -41,7 +41,7 @@ fn rooms(power: f64) -> Description {
     };
     d.zones[0].ventilation.push(window);
     let (power, radiative) = (number(&mut d, "gain.power", power), number(&mut d, "gain.radiative", 0.0));
-    d.zones[0].gains.push(Gain { name: "lamp".to_owned(), power, radiative, schedule: None });
+    d.zones[0].gains.push(Gain { name: "lamp".to_owned(), power, radiative, activity: None, schedule: None });
     let flow = number(&mut d, "hatch.flow", 0.05);
     d.air_paths.push(AirPath {
         name: "hatch".to_owned(),
@@ -49,6 +49,7 @@ fn rooms(power: f64) -> Description {
         flow,
         schedule: None,
         density: None,
+        control: None,
     });
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.2));
     d

@@ -268,7 +268,7 @@ fn ventilated() -> Plan {
         minimum_closed_time,
     });
     let (power, radiative) = (b.number("heater.power", 600.0), b.number("heater.radiative", 0.2));
-    let heater = Gain { name: "heater".to_owned(), power, radiative, schedule: None };
+    let heater = Gain { name: "heater".to_owned(), power, radiative, activity: None, schedule: None };
     b.description.zones[0].gains.push(heater);
     b.plan()
 }
@@ -371,7 +371,13 @@ fn steady_heat_by_stack() {
     let mut b = zones(1);
     let _ = [vent(&mut b, (0, None), 0.1, 0.5), vent(&mut b, (0, None), 0.1, 2.5)];
     let (power, radiative) = (b.number("heater.power", 500.0), b.number("heater.radiative", 0.0));
-    b.description.zones[0].gains.push(Gain { name: "heater".to_owned(), power, radiative, schedule: None });
+    b.description.zones[0].gains.push(Gain {
+        name: "heater".to_owned(),
+        power,
+        radiative,
+        activity: None,
+        schedule: None,
+    });
     let plan = b.plan();
     let rows = forcing(&plan, Scheme::Sdirk2, 400, 900.0, |_, row| row[channel::AIR_TEMPERATURE] = 10.0);
     let outputs = vec![Output::AirTemperature { zone: 0 }, Output::VentOutflow { vent: 1 }];

@@ -214,6 +214,7 @@ fn coupled_loads_by_hand() {
         flow,
         schedule: None,
         density: None,
+        control: None,
     });
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.2));
     let plan = Plan::new(d).unwrap();

@@ -24,8 +24,9 @@ from mascarin.building.engine_input.mesh import Mesh, choose
 from mascarin.building.engine_input.ratings import WindowRating, require_accepted, window_ratings
 from mascarin.building.parameters.parameter import parameters
 from mascarin.building.parameters.unused_parameters import sides as every_side
+from mascarin.building.parts.air.air_path import AirPath
 from mascarin.building.parts.air.ventilation import VentilationUnit
-from mascarin.building.parts.air.zone import AirPath, Zone
+from mascarin.building.parts.air.zone import Zone
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.measured_values import Driven
 from mascarin.building.parts.envelope.surface import Side

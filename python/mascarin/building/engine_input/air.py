@@ -7,10 +7,10 @@ from typing import Any
 
 from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.ids import Ids, Json, Positions, below, deeper, fields_of
+from mascarin.building.parts.air.air_path import AirPath, Opening
 from mascarin.building.parts.air.flow_density import ConstantDensity
 from mascarin.building.parts.air.set_point import SetPoint
 from mascarin.building.parts.air.ventilation import VentilationUnit
-from mascarin.building.parts.air.zone import AirPath, Opening
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.bridge import ThermalBridge
 from mascarin.building.parts.envelope.measured_values import Driven
@@ -56,13 +56,16 @@ def describe_air_path(
     """Describe the air that two zones exchange, or that flows from one to the other."""
     first, second = _zones(building, path)
     ends = {"from": first, "to": second} if path.one_way else {"between": [first, second]}
-    return {"name": name, **ends, **driven(path, "flow", positions, ids), **density_of(path, ids)}
+    written = {"name": name, **ends, **driven(path, "flow", positions, ids), **density_of(path, ids)}
+    # A flow one way has none.
+    return written if path.one_way else written | control_of(building, path)
 
 
 def describe_door(building: Description, positions: Positions, name: str, path: AirPath, ids: Ids) -> Json:
     """Describe a door between two zones."""
     written = {"name": name, "between": list(_zones(building, path))}
-    return {**written, **fields_of(path.door, ids, "door."), **schedule_of(path, positions)}
+    numbers = fields_of(path.door, ids, "door.")
+    return {**written, **numbers, **schedule_of(path, positions), **control_of(building, path)}
 
 
 def _zones(building: Description, path: AirPath) -> tuple[int, int]:

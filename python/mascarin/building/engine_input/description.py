@@ -42,8 +42,8 @@ from mascarin.building.engine_input.windows import (
 )
 from mascarin.building.engine_input.zones import describe_zone
 from mascarin.building.parameters.parameter import parameters
+from mascarin.building.parts.air.air_path import AirPath
 from mascarin.building.parts.air.schedule import schedule_channel
-from mascarin.building.parts.air.zone import AirPath
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.materials.text_law import TextSky, numbers_of
 from mascarin.building.parts.self_shading import obstructions

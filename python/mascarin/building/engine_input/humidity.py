@@ -60,7 +60,8 @@ def _zone(humidity: Humidity, name: str, positions: Positions, ids: Ids) -> Json
 
 def _gain(gain: VapourGain, positions: Positions, ids: Ids) -> Json:
     if gain.power is not None:
-        return {"power": ids("power"), **schedule_of(gain, positions)}
+        activity = {} if gain.activity is None else {"activity": ids("activity")}
+        return {"power": ids("power"), **activity, **schedule_of(gain, positions)}
     return driven(gain, "rate", positions, ids)
 
 

@@ -74,7 +74,10 @@ def _control(
     building: Description, positions: Positions, named: tuple[str, VentControl], part_ids: Ids
 ) -> Json:
     name, control = named
-    written: Json = {"name": name, "zone": list(building.zones).index(control.zone)}
+    zones = list(building.zones)
+    written: Json = {"name": name, "zone": zones.index(control.zone)}
+    if control.reference_zone is not None:
+        written["reference_zone"] = zones.index(control.reference_zone)
     for condition, _ in control.conditions:
         inner_ids = deeper(part_ids, condition)
         band = {"open": inner_ids("open"), "close": inner_ids("close")}

@@ -31,6 +31,7 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
             "name": key,
             **driven(part, "power", positions, deeper(ids, f"gains.{key}")),
             "radiative": ids(f"gains.{key}.radiative"),
+            **({} if part.activity is None else {"activity": ids(f"gains.{key}.activity")}),
         }
         for key, part in zone.gains.items()
     ]

@@ -11,10 +11,11 @@ from mascarin.building.base.leaves import leaves
 from mascarin.building.base.number import Number, Remark
 from mascarin.building.parameters.text_laws import text_laws
 from mascarin.building.parameters.unused_parameters import has_height, sides, without_effect
+from mascarin.building.parts.air.air_path import ASHRAE_OPENING, BROWN_SOLVASON
 from mascarin.building.parts.air.humidity import EMPD, PSYCHROMETRICS
 from mascarin.building.parts.air.vent import ORIFICE, SWAMI_CHANDRA, LowRise
 from mascarin.building.parts.air.ventilation import RECOVERY_SOURCE
-from mascarin.building.parts.air.zone import ASHRAE_OPENING, BROWN_SOLVASON, TracedSun
+from mascarin.building.parts.air.zone import TracedSun
 from mascarin.building.parts.envelope.convection import SOURCES
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.heat_source import SOURCE as HEAT_SOURCE

@@ -10,11 +10,12 @@ from pydantic import Field, WithJsonSchema
 from mascarin.building.base.dimensions import Dimensions
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part, Shorthand
+from mascarin.building.parts.air.air_path import AirPath, Opening
 from mascarin.building.parts.air.humidity import Humidity
 from mascarin.building.parts.air.schedule import Schedule
 from mascarin.building.parts.air.vent import Vent, VentControl
 from mascarin.building.parts.air.ventilation import VentilationUnit
-from mascarin.building.parts.air.zone import AirPath, Opening, Zone
+from mascarin.building.parts.air.zone import Zone
 from mascarin.building.parts.derived_output import DerivedOutput
 from mascarin.building.parts.envelope.surface import Construction, Surface, WallSensor
 from mascarin.building.parts.heat_source import HeatSource

@@ -73,6 +73,7 @@ from mascarin.building.quantities.humidity import (
     VapourStorage,
 )
 from mascarin.building.quantities.loads import (
+    Activity,
     Capacity,
     ColumnFactor,
     Effectiveness,
@@ -181,6 +182,7 @@ from mascarin.building.quantities.windows import (
 
 __all__ = [
     "Absorptance",
+    "Activity",
     "AirChange",
     "AirChangePerKelvin",
     "AirChangePerSpeed",

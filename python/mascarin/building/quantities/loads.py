@@ -16,6 +16,16 @@ GainPower = Annotated[
         Limits(at_least=-1e7, at_most=1e7),
     ),
 ]
+Activity = Annotated[
+    Number,
+    Quantity(
+        "W",
+        "Heat of the activity of a person, sensible and latent",
+        Percent(15, "people of one activity, ISO 8996"),
+        # The tables that the sensible part was fitted to.
+        Limits(at_least=70.0, at_most=500.0),
+    ),
+]
 Radiative = Annotated[
     Number,
     Quantity("-", "Radiative fraction of the heat", Within(0.2, "range in handbooks"), FRACTION),

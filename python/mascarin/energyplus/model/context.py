@@ -93,12 +93,15 @@ class Vapour:
     zone : str
         Name of the zone in the description.
     latent : Year
-        Latent heat. [W]
+        Latent heat; of people all heat. [W]
+    activity : float or None
+        Heat of the activity of a person, where it is all heat of people. [W]
     """
 
     item: IdfObject
     zone: str
     latent: Year
+    activity: float | None = None
 
 
 @dataclass

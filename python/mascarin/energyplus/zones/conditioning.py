@@ -10,7 +10,7 @@ from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import NEVER_COOLS, NEVER_HEATS, temperature, year
-from mascarin.energyplus.model.year import DAYS, Year, combined, constant, year_of
+from mascarin.energyplus.model.year import Year, combined, constant
 from mascarin.energyplus.zones.draughts import Draught, density_of, limited, ventilate
 from mascarin.energyplus.zones.equipment import Plant, replaced
 from mascarin.energyplus.zones.gains import people_in
@@ -42,9 +42,6 @@ _USUAL: Final = 23.0
 #: So far above a heating set point, a zone needs no heat in a step without recovery either: air of 2 changes
 #: per hour, 15 K colder, takes 1 to 2 K from the air of a room within a step [K].
 _ABOVE_SET_POINT: Final = 1.0
-#: Latitude of the tropics [deg], and last days of winter, spring, summer, autumn and winter in the north.
-_TROPICS: Final = 23.44
-_SEASONS: Final = ("02-28", "05-31", "08-31", "11-30", "12-31")
 _ROOM: Final = {"heating": 20.0, "cooling": 24.0}
 
 
@@ -123,38 +120,6 @@ def usual_temperatures(context: Context, zones: dict[str, Zone]) -> dict[str, fl
         if key in temperatures:
             temperatures[key] = sum(means) - _USUAL
     return temperatures
-
-
-def seasonal_temperatures(context: Context, zones: dict[str, Zone]) -> dict[str, Year]:
-    """Temperature of each zone by season: its heating set point in winter, its cooling set point in summer.
-
-    Between them in spring and autumn; the cooling set point all year in the tropics; a usual temperature
-    where there is no set point. [degC]
-
-    Parameters
-    ----------
-    context : Context
-        The conversion.
-    zones : dict of str to Zone
-        Zones by the name in the file, in small letters.
-    """
-    latitude = float(context.section("site").get("latitude", 0.0))
-    shares: tuple[float, ...] = (0.0, 0.5, 1.0, 0.5, 0.0) if latitude > 0.0 else (1.0, 0.5, 0.0, 0.5, 1.0)
-    shares = (1.0,) * len(shares) if abs(latitude) < _TROPICS else shares
-    weeks = zip(_SEASONS, shares, strict=True)
-    summer = year_of([(until, (((0, share),),) * len(DAYS)) for until, share in weeks])
-    temperatures = dict.fromkeys(zones, constant(_USUAL))
-    for key, points in _thermostats(context, zones):
-        if key in temperatures:
-            temperatures[key] = combined(_between, points.heating, points.cooling, summer)
-    return temperatures
-
-
-def _between(heating: float, cooling: float, share: float) -> float:
-    """Temperature between two set points of which either may never act. [degC]"""
-    low = heating if heating > NEVER_HEATS else min(cooling, _USUAL)
-    high = cooling if cooling < NEVER_COOLS else max(heating, _USUAL)
-    return low + share * (max(high, low) - low)
 
 
 @reads("ZoneControl:Thermostat", _TEMPLATE, "HVACTemplate:Thermostat")

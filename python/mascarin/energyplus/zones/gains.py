@@ -20,6 +20,8 @@ _EQUIPMENT: Final = (
     "OtherEquipment",
 )
 KINDS: Final = ("People", "Lights", *_EQUIPMENT)
+#: Activities that a building may state. [W]
+_ACTIVITIES: Final = (70.0, 500.0)
 _ZONE_KEYS: Final = (
     "zone_or_zonelist_or_space_or_spacelist_name",
     "zone_or_zonelist_name",
@@ -38,19 +40,22 @@ class Heat:
     name : str
         Its name in the zone.
     power : Year
-        Sensible heat. [W]
+        Sensible heat; of people all heat. [W]
     radiative : float
         Radiative fraction. [-]
+    activity : float or None
+        Heat of the activity of a person, where the power is all heat of people. [W]
     """
 
     item: IdfObject
     name: str
     power: Year
     radiative: float
+    activity: float | None = None
 
 
 @reads(*KINDS)
-def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, Year]) -> None:
+def describe_gains(context: Context, zones: dict[str, Zone]) -> None:
     """Enter all internal gains.
 
     Parameters
@@ -59,8 +64,6 @@ def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, Year
         The conversion.
     zones : dict of str to Zone
         Zones by the name in the file, in small letters.
-    air : dict of str to Year
-        Temperature of each at which the sensible heat of people is taken. [degC]
 
     Raises
     ------
@@ -70,9 +73,7 @@ def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, Year
     by_zone: dict[str, list[Heat]] = {key: [] for key in zones}
     for item in context.model.of("People"):
         for zone in _zones(context, item, zones):
-            by_zone[zone.item.name.casefold()].append(
-                _people(context, item, zone, air[zone.item.name.casefold()])
-            )
+            by_zone[zone.item.name.casefold()].append(_people(context, item, zone))
     for item in context.model.of("Lights"):
         for zone in _zones(context, item, zones):
             by_zone[zone.item.name.casefold()].append(_lights(context, item, zone, zones))
@@ -128,52 +129,35 @@ def _level(context: Context, item: IdfObject, *keys: str) -> float:
     return level or 0.0
 
 
-def sensible(activity: float, air: float) -> float:
-    """Sensible heat of a person by the heat of its activity and the air temperature. [W]
-
-    A fit of the tables of the ASHRAE Handbook of Fundamentals, as in the EnergyPlus Engineering Reference
-    (internal gains, people).
-    """
-    m, t = activity, air
-    heat = (
-        6.461927 + 0.946892 * m + 0.0000255737 * m**2 + 7.139322 * t - 0.0627909 * t * m
-        + 0.0000589172 * t * m**2 - 0.198550 * t**2 + 0.000940018 * t**2 * m - 0.00000149532 * t**2 * m**2
-    )  # fmt: skip
-    return min(max(heat, 0.0), activity)
-
-
-def _slope(activity: float, air: float) -> float:
-    """Relative change of the sensible heat of a person for a kelvin. [1/K]"""
-    middle = sensible(activity, air)
-    return (sensible(activity, air + 0.5) - sensible(activity, air - 0.5)) / middle if middle > 0.0 else 0.0
-
-
-def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
+def _people(context: Context, item: IdfObject, zone: Zone) -> Heat:
     count = _number_of_people(context, item, zone)
     present = year(context, item, "number_of_people_schedule_name")
     activity = year(context, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
     released = combined(lambda presence, heat: count * presence * heat, present, activity)
-    if share is None:
-        power = combined(
-            lambda presence, heat, room: count * presence * sensible(heat, room), present, activity, air
-        )
-        low, high = min(air.values), max(air.values)
-        slopes = (_slope(max(activity.mean(), 1.0), room) for room in (low, high))
-        change = " to ".join(dict.fromkeys(f"{100.0 * slope:+.0f}" for slope in slopes))
-        used = f"{low:.1f} degC" if low == high else f"{low:.1f} to {high:.1f} degC, by season,"
+    radiative = item.number("fraction_radiant") or 0.0
+    if share is not None:
+        sensible_share = share
+        power = combined(lambda heat: heat * sensible_share, released)
+        latent = combined(lambda heat: max(heat * (1.0 - sensible_share), 0.0), released)
+        context.vapour.append(Vapour(item, zone.name, latent))
+        return Heat(item, item.name, power, radiative)
+    active = [heat for heat in activity.values if heat > 0.0] or [120.0]
+    usual = min(max(sum(active) / len(active), _ACTIVITIES[0]), _ACTIVITIES[1])
+    if min(active) != max(active) or usual != active[0]:
         context.findings.approximated(
             item,
-            "sensible heat that EnergyPlus changes with the air temperature",
-            f"that at {used} is used; in EnergyPlus it changes by {change} % for each kelvin of difference"
-            + ("" if context.has_vapour else "; moisture is left out"),
+            "an activity that changes, or is outside of the tables of people",
+            f"its heat follows the schedule; the sensible part of it is that of {usual:.0f} W a person",
         )
-    else:
-        sensible_share = share
-        power = combined(lambda presence, heat: count * presence * heat * sensible_share, present, activity)
-    latent = combined(lambda total, heat: max(total - heat, 0.0), released, power)
-    context.vapour.append(Vapour(item, zone.name, latent))
-    return Heat(item, item.name, power, item.number("fraction_radiant") or 0.0)
+    if not context.has_vapour:
+        context.findings.approximated(
+            item,
+            "latent heat of people",
+            "moisture is left out; their sensible heat follows the air temperature",
+        )
+    context.vapour.append(Vapour(item, zone.name, released, usual))
+    return Heat(item, item.name, released, radiative, usual)
 
 
 def _design_level(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> float:
@@ -241,6 +225,8 @@ def _enter(context: Context, zone: Zone, heats: list[Heat]) -> None:
         gains[name] = {"power": round(power, 6)}
         if heat.radiative > 0.0:
             gains[name]["radiative"] = round(heat.radiative, 6)
+        if heat.activity is not None:
+            gains[name]["activity"] = round(heat.activity, 6)
         if schedule is not None:
             gains[name]["schedule"] = schedule
     if gains:

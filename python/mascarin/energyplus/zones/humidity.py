@@ -14,6 +14,7 @@ from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.model.year import Year, combined, constant
 from mascarin.physics import (
     KELVIN,
+    LATENT_HEAT,
     STANDARD_PRESSURE,
     dew_point,
     relative_humidity,
@@ -205,6 +206,10 @@ def _zones(context: Context, air: Mapping[str, float]) -> Section:
         schedule, _ = fraction(context, f"{source.item.name} vapour", _share(source.latent, peak))
         enthalpy = _ENTHALPY[0] + _ENTHALPY[1] * temperatures[source.zone]
         gain: Section = {"rate": round(peak / enthalpy, 12)}
+        if source.activity is not None:
+            # Of EnergyPlus' mass of vapour.
+            power = peak * LATENT_HEAT / enthalpy
+            gain = {"power": round(power, 6), "activity": round(source.activity, 6)}
         gain |= {} if schedule is None else {"schedule": schedule}
         zone = held.setdefault(source.zone, {})
         name = context.names.of(f"vapour of {source.zone}", source.item.name, source.item.kind)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Final
 
 from mascarin.energyplus.model.context import Context
@@ -44,67 +45,110 @@ def design_flow(context: Context, item: IdfObject, zone: Zone, zones: dict[str, 
     return item.needed("design_flow_rate")
 
 
+@dataclass(frozen=True)
+class Mixed:
+    """Air of an object from one zone to another.
+
+    Attributes
+    ----------
+    item : IdfObject
+        The object.
+    flow : float
+        Flow at a schedule of 1. [m3/s]
+    values : Year
+        Schedule of its fraction. [-]
+    """
+
+    item: IdfObject
+    flow: float
+    values: Year
+
+
+#: Two zones, and by how much the first has to be warmer, where that is asked for [K].
+_Pair = tuple[str, str, float | None]
+
+
 @reads("ZoneMixing", "ZoneCrossMixing")
 def describe_mixing(context: Context, zones: dict[str, Zone]) -> None:
     """Enter air between zones: in both directions, where EnergyPlus may have one alone."""
-    one_way: dict[tuple[str, str], list[tuple[IdfObject, float, Year]]] = {}
+    flows_by_pair: dict[_Pair, list[Mixed]] = {}
     for item in context.model.of("ZoneMixing", "ZoneCrossMixing"):
         sources = context.zones_of(item, "source_zone_or_space_name", "source_zone_name")
         source = zones.get(sources[0].name.casefold())
-        if item.number("delta_temperature") or item.text("delta_temperature_schedule_name"):
-            context.findings.left_out(
-                item, "mixing only at a temperature difference", "it mixes at all times"
-            )
         for zone in zones_of(context, item, zones):
             if source is None or source is zone:
                 continue
             flow, values = design_flow(context, item, zone, zones), year(context, item, "schedule_name")
-            pair = (zone.name, source.name)
-            if item.kind == "ZoneCrossMixing":
+            pair = _pair(zone.name, source.name, _difference(context, item))
+            if item.kind == "ZoneCrossMixing" and pair[2] is None:
                 # A pair of objects describes one exchange; each adds to the same flow.
-                pair = (min(pair), max(pair))
-            one_way.setdefault(pair, []).append((item, flow, values))
-    done: set[tuple[str, str]] = set()
-    for (to, origin), flows in one_way.items():
-        if (origin, to) in done:
+                pair = (min(pair[:2]), max(pair[:2]), None)
+            flows_by_pair.setdefault(pair, []).append(Mixed(item, flow, values))
+    done: set[_Pair] = set()
+    for pair, flows in flows_by_pair.items():
+        opposite = (pair[1], pair[0], pair[2])
+        if pair[2] is None and opposite in done:
             continue
-        done.add((to, origin))
-        back = one_way.get((origin, to), [])
-        crossed = flows[0][0].kind == "ZoneCrossMixing"
+        done.add(pair)
+        back = flows_by_pair.get(opposite, []) if pair[2] is None else []
+        crossed = flows[0].item.kind == "ZoneCrossMixing"
         if not crossed and not _equal(flows, back):
-            heat = sum(flow for _, flow, _ in flows) * AIR_SPECIFIC_HEAT * _AIR_DENSITY
+            heat = sum(mixed.flow for mixed in flows) * AIR_SPECIFIC_HEAT * _AIR_DENSITY
             context.findings.left_out(
-                flows[0][0],
+                flows[0].item,
                 "air in one direction, which nothing replaces in the zone that it comes from",
                 f"the same flow returns, and takes {heat:.0f} W for each kelvin between both zones from the "
                 "source: where gains differ, both are several kelvins colder or warmer",
             )
-        _path(
-            context,
-            to,
-            origin,
-            max((flows, back), key=lambda some: sum(flow for _, flow, _ in some)),
-            crossed,
+        larger = max((flows, back), key=lambda some: sum(mixed.flow for mixed in some))
+        _path(context, pair, larger, crossed)
+
+
+@reads("ZoneMixing", "ZoneCrossMixing")
+def _difference(context: Context, item: IdfObject) -> float:
+    """By how much the source has to be warmer, below zero colder; zero: it always mixes. [K]"""
+    if not item.text("delta_temperature_schedule_name"):
+        return item.number("delta_temperature") or 0.0
+    values = year(context, item, "delta_temperature_schedule_name")
+    if values.constant is None:
+        context.findings.left_out(
+            item, "a temperature difference by schedule", f"its mean is used: {values.mean():.1f} K"
         )
+    return values.mean()
 
 
-def _equal(flows: list[tuple[IdfObject, float, Year]], back: list[tuple[IdfObject, float, Year]]) -> bool:
-    forward_flow, backward_flow = (sum(flow for _, flow, _ in some) for some in (flows, back))
+def _pair(to: str, source: str, difference: float) -> _Pair:
+    """The zones of a flow, the warmer one first where a difference is asked for."""
+    if difference == 0.0:
+        return to, source, None
+    return (source, to, difference) if difference > 0.0 else (to, source, -difference)
+
+
+def _equal(flows: list[Mixed], back: list[Mixed]) -> bool:
+    forward_flow, backward_flow = (sum(mixed.flow for mixed in some) for some in (flows, back))
     return abs(forward_flow - backward_flow) <= 1e-6 * max(forward_flow, backward_flow, 1e-12)
 
 
-def _path(
-    context: Context, to: str, source: str, flows: list[tuple[IdfObject, float, Year]], crossed: bool
-) -> None:
-    rates = [flow for _, flow, _ in flows]
+def _path(context: Context, pair: _Pair, flows: list[Mixed], crossed: bool) -> None:
+    rates = [mixed.flow for mixed in flows]
     total = combined(
         lambda *shares: (max if crossed else sum)(f * s for f, s in zip(rates, shares, strict=True)),
-        *(values for _, _, values in flows),
+        *(mixed.values for mixed in flows),
     )
     peak = max(total.values)
     if peak <= 0.0:
         return
-    schedule, most = fraction(context, f"{flows[0][0].name} flow", combined(lambda v: v / peak, total))
-    path: dict[str, Any] = {"between": [to, source], "flow": round(peak * most, 8), "density": "zone"}
-    name = context.names.of("air_paths", flows[0][0].name)
+    label = flows[0].item.name
+    schedule, most = fraction(context, f"{label} flow", combined(lambda v: v / peak, total))
+    path: dict[str, Any] = {"between": list(pair[:2]), "flow": round(peak * most, 8), "density": "zone"}
+    if pair[2] is not None:
+        control = context.names.of("controls", f"{label} warmer", flows[0].item.kind)
+        limit = round(min(pair[2], 90.0), 6)
+        context.section("controls")[control] = {
+            "zone": pair[0],
+            "reference_zone": pair[1],
+            "difference": {"open": limit, "close": limit},
+        }
+        path["control"] = control
+    name = context.names.of("air_paths", label)
     context.section("air_paths")[name] = path | ({} if schedule is None else {"schedule": schedule})

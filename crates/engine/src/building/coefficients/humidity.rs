@@ -10,6 +10,7 @@ use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, channel, scheduled};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::AIR_SPECIFIC_HEAT;
+use crate::physics::occupants::sensible_share;
 use crate::physics::psychrometrics::{LATENT_HEAT, condensing_pressure};
 use crate::physics::vapour_layers::VapourLayers;
 
@@ -52,7 +53,21 @@ pub struct VapourZone<S> {
 struct Source<S> {
     /// [kg/s].
     whole: S,
+    /// Heat of the activity of a person, of whose heat only the latent part counts [W]; none: all of it is vapour.
+    activity: Option<S>,
     schedule: Schedule,
+}
+
+impl<S: Real> Source<S> {
+    /// Vapour in a forcing row and in air of a temperature [kg/s].
+    #[inline(always)]
+    fn at(&self, row: &[f64], air: S) -> S {
+        let whole = scheduled(self.whole, self.schedule, row);
+        match self.activity {
+            Some(activity) => whole * (S::one() - sensible_share(activity, air)),
+            None => whole,
+        }
+    }
 }
 
 /// Ideal drying.
@@ -145,6 +160,7 @@ impl<S: Real> VapourZone<S> {
     fn new(zone: &ZoneHumidity, values: &Values<'_, S>, air: S) -> Self {
         let gains = zone.gains.iter().map(|gain| Source {
             whole: values.get_or(gain.rate, 0.0) + values.get_or(gain.power, 0.0).scale(1.0 / LATENT_HEAT),
+            activity: gain.activity.map(|id| values.get(id)),
             schedule: Schedule::new(gain.schedule),
         });
         let drying = zone.drying.as_ref().map(|drying| match drying {
@@ -177,10 +193,15 @@ impl<S: Real> VapourZone<S> {
         !self.gains.is_empty() || self.has_plants()
     }
 
-    /// Vapour from all sources in a forcing row [kg/s].
+    /// Vapour from all sources in a forcing row [kg/s]; `air`: of the zone at the start of the step [degC].
     #[inline(always)]
-    pub(crate) fn gain(&self, row: &[f64]) -> S {
-        self.gains.iter().fold(S::zero(), |sum, gain| sum + scheduled(gain.whole, gain.schedule, row))
+    pub(crate) fn gain(&self, row: &[f64], air: S) -> S {
+        self.gains.iter().fold(S::zero(), |sum, gain| sum + gain.at(row, air))
+    }
+
+    /// Whether people are among its sources.
+    pub(crate) fn has_people(&self) -> bool {
+        self.gains.iter().any(|gain| gain.activity.is_some())
     }
 }
 

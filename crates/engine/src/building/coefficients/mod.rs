@@ -14,6 +14,7 @@ pub(crate) mod zone;
 pub use self::bridge::{Bridge, BridgeEnd};
 pub use self::heat_source::HeatSource;
 pub use self::humidity::HumidityCoefficients;
+use self::humidity::VapourZone;
 pub use self::mechanical_air::MechanicalAir;
 pub use self::passing::Passing;
 pub use self::surface::{Boundary, Imposed, Outdoors, SurfaceCoefficients};
@@ -30,6 +31,7 @@ use crate::physics::air_flow::Path;
 use crate::physics::doors::Door;
 use crate::physics::flow_density::SiteAir;
 use crate::physics::formula::expression::Expression;
+use crate::physics::gains::Gain;
 use crate::physics::longwave::SkyEmission;
 
 /// All coefficients of a run.
@@ -51,6 +53,8 @@ pub struct Coefficients<S> {
     pub mechanical_air: MechanicalAir<S>,
     /// Air of the site, where flows are volumes of air of a density that changes.
     pub(crate) densities: Option<SiteAir<S>>,
+    /// Whether people give heat or vapour by the temperature of the air.
+    pub(crate) has_people: bool,
     /// Openings of the pressure network, and controls of openings.
     pub vents: Vents<S>,
     /// Thermal bridges.
@@ -92,7 +96,10 @@ impl<S: Real> Coefficients<S> {
         let soil = surfaces_described.filter_map(|(index, surface)| Some((index, surface.soil.as_ref()?)));
         let heat_sources =
             heat_sources.chain(soil.flat_map(|soil| HeatSource::of_soil(plan, soil))).collect();
+        let has_people = zones.iter().flat_map(|zone| &zone.gains).any(Gain::of_people)
+            || humidity.iter().flat_map(|humidity| &humidity.zones).any(VapourZone::has_people);
         Self {
+            has_people,
             heat_sources,
             humidity,
             walls,

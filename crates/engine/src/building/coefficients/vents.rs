@@ -110,6 +110,8 @@ type Limits<S> = [S; 2];
 #[derive(Debug, Clone)]
 pub(crate) struct Control<S> {
     zone: usize,
+    /// Zone that the difference is taken to; none: the outdoor air.
+    reference: Option<usize>,
     indoor: Option<Limits<S>>,
     outdoor: Option<Limits<S>>,
     difference: Option<Limits<S>>,
@@ -129,6 +131,7 @@ impl<S: Real> Control<S> {
         let seconds = |id| values.get_or(id, 0.0).scale(60.0);
         Self {
             zone: control.zone,
+            reference: control.reference_zone,
             indoor: of(&control.indoor),
             outdoor: of(&control.outdoor),
             difference: of(&control.difference),
@@ -156,7 +159,8 @@ impl<S: Real> Control<S> {
         let mut warm = S::one();
         let limit = |[opens, closes]: Limits<S>| S::select(was_open, closes, opens);
         let (indoor, outdoor) = (air[self.zone], S::constant(outdoor));
-        let above = [(self.indoor, indoor), (self.outdoor, outdoor), (self.difference, indoor - outdoor)];
+        let reference = self.reference.map_or(outdoor, |zone| air[zone]);
+        let above = [(self.indoor, indoor), (self.outdoor, outdoor), (self.difference, indoor - reference)];
         for (limits, value) in above {
             if let Some(limits) = limits {
                 warm = S::select(limit(limits).lt(value), warm, S::zero());
@@ -207,6 +211,7 @@ mod tests {
     fn hysteresis() {
         let control = Control {
             zone: 0,
+            reference: None,
             indoor: Some([24.0, 22.0]),
             outdoor: None,
             difference: Some([2.0, 1.0]),

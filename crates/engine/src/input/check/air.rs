@@ -54,7 +54,9 @@ fn check_ends(description: &Description, place: &str, ends: [usize; 2]) -> Check
 fn check_door(description: &Description, door: &Door) -> Checked {
     let place = format!("door {}", door.name);
     check_ends(description, &place, door.between)?;
-    check_schedule(description, &place, door.schedule)
+    check_schedule(description, &place, door.schedule)?;
+    let controls = description.controls.len();
+    door.control.map_or(Ok(()), |control| check_index(&place, "control", control, controls))
 }
 
 fn check_unit(description: &Description, unit: &VentilationUnit) -> Checked {
@@ -95,6 +97,9 @@ fn check_vent(description: &Description, vent: &Vent) -> Checked {
 fn check_control(description: &Description, control: &VentControl) -> Checked {
     let place = format!("control {}", control.name);
     check_index(&place, "zone", control.zone, description.zones.len())?;
+    if let Some(reference) = control.reference_zone {
+        check_ends(description, &place, [control.zone, reference])?;
+    }
     check_schedule(description, &place, control.rain.as_ref().map(|rain| rain.channel))
 }
 

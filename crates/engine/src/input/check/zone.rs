@@ -108,7 +108,8 @@ pub(super) fn check_air_path(description: &Description, path: &AirPath) -> Check
     if path.between[0] == path.between[1] {
         return refuse(place, format_args!("zone {} twice", path.between[0]), "two zones");
     }
-    check_schedule(description, &place, path.schedule)
+    check_schedule(description, &place, path.schedule)?;
+    check_control(description, &place, path.control)
 }
 
 /// In a zone.

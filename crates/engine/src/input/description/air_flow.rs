@@ -23,6 +23,9 @@ pub struct AirPath {
     /// Density of the air that the flow is a volume of. None: that of the site.
     #[serde(default)]
     pub density: Option<FlowDensity>,
+    /// Index into [`Description::controls`](super::Description::controls): what starts and stops it. None: it always flows.
+    #[serde(default)]
+    pub control: Option<usize>,
 }
 
 /// Air that flows from one zone to another.
@@ -64,6 +67,9 @@ pub struct Door {
     /// Index into [`Description::channels`](super::Description::channels): what `open` is multiplied by [-]. None: one.
     #[serde(default)]
     pub schedule: Option<usize>,
+    /// Index into [`Description::controls`](super::Description::controls): what opens and closes it. None: not controlled.
+    #[serde(default)]
+    pub control: Option<usize>,
 }
 
 /// A flow of a ventilation unit into a zone or out of it.

@@ -52,6 +52,10 @@ pub struct VapourGain {
     /// Vapour at full schedule [kg/s].
     #[serde(default)]
     pub rate: Option<ParamId>,
+    /// Heat of the activity of a person [W]: the power is then all heat of people, and the air gets the latent part of it at its
+    /// temperature. None: the power is all latent.
+    #[serde(default)]
+    pub activity: Option<ParamId>,
     /// Index into [`Description::channels`](super::Description::channels): fraction of the source [-]. None: always all of it.
     #[serde(default)]
     pub schedule: Option<usize>,

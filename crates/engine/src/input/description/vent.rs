@@ -95,7 +95,10 @@ pub struct VentControl {
     /// Temperature of the outdoor air below limits [degC].
     #[serde(default)]
     pub outdoor_below: Option<Band>,
-    /// Temperature of the zone less that of the outdoor air, above limits [K].
+    /// Index of the zone whose air takes the place of the outdoor air in `difference`. None: the outdoor air.
+    #[serde(default)]
+    pub reference_zone: Option<usize>,
+    /// Temperature of the zone less that of the outdoor air, or of another zone, above limits [K].
     #[serde(default)]
     pub difference: Option<Band>,
     /// Wind at the mast below limits [m/s].

@@ -151,6 +151,10 @@ pub struct Gain {
     pub power: ParamId,
     /// Part of it that is radiated [-].
     pub radiative: ParamId,
+    /// Heat of the activity of a person [W]: the power is then all heat of people, and the air gets the sensible part of it at
+    /// its temperature. None: the power is what the air gets.
+    #[serde(default)]
+    pub activity: Option<ParamId>,
     /// Index into [`Description::channels`](super::Description::channels): fraction of the power [-]. None: always all of it.
     #[serde(default)]
     pub schedule: Option<usize>,

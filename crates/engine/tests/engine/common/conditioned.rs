@@ -36,6 +36,7 @@ pub fn conditioned(gamma: f64) -> Description {
         name: "people".to_owned(),
         power: number(&mut d, "gain.power", 100.0),
         radiative: number(&mut d, "gain.radiative", 0.6),
+        activity: None,
         schedule: Some(1),
     };
     d.zones[0].gains.push(gain);
@@ -54,6 +55,7 @@ pub fn conditioned(gamma: f64) -> Description {
         flow: number(&mut d, "hatch.flow", 0.003),
         schedule: None,
         density: None,
+        control: None,
     };
     d.air_paths.push(path);
     let opening = Opening {

@@ -67,6 +67,7 @@ pub fn linear_cell() -> Description {
         name: "lamp".to_owned(),
         power: number(&mut d, "lamp.power", 40.0),
         radiative: number(&mut d, "lamp.radiative", 0.5),
+        activity: None,
         schedule: None,
     };
     d.zones[0].gains.push(gain);
@@ -86,6 +87,7 @@ pub fn linear_cell() -> Description {
         flow,
         schedule: None,
         density: None,
+        control: None,
     });
     d
 }

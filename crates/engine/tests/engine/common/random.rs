@@ -629,6 +629,7 @@ impl Maker<'_> {
                     flow,
                     schedule,
                     density: None,
+                    control: None,
                 });
             }
         }
@@ -789,6 +790,7 @@ impl Maker<'_> {
                 name: "gain".to_owned(),
                 power: number(d, "gain.power", self.random.between(10.0, 300.0)),
                 radiative: number(d, "gain.radiative", self.random.between(0.0, 1.0)),
+                activity: None,
                 schedule: self.random.chance(0.6).then_some(SCHEDULE),
             };
             d.zones[zone].gains.push(gain);

@@ -37,6 +37,8 @@ class VapourGain(Driven):
     100.0
     >>> VapourGain(column="vapour", unit="g/h").course.name
     'vapour [g/h]'
+    >>> float(VapourGain(power=360, activity=120).activity)  # three people: all their heat
+    120.0
     """
 
     NUMBER: ClassVar = "rate"
@@ -48,6 +50,11 @@ class VapourGain(Driven):
     power: q.LatentPower | None = None
     rate: q.VapourRate | None = None
     unit: Literal["kg/s", "kg/h", "g/h"] | None = Field(None, description="Unit of the column; none: kg/s")
+    activity: q.Activity | None = Field(
+        None,
+        description="Heat of the activity of a person [W]: the power is then all heat of people, and its "
+        "latent part at the air temperature becomes vapour; none: all of the power does",
+    )
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the source; none: always 1"
     )
@@ -67,6 +74,12 @@ class VapourGain(Driven):
                 f"power and {other}",
                 "one of power [W], rate [kg/s] and column",
                 "Keep one of them: 100 W of latent heat are 4e-5 kg/s.",
+            )
+        if self.activity is not None and self.power is None:
+            raise problem(
+                "'activity' without 'power'",
+                "the heat of all people as power [W]",
+                "Write 'power:', or remove 'activity:': a rate is vapour already.",
             )
         return self
 

@@ -286,7 +286,10 @@ class VentControl(Part):
     indoor: TemperatureBand | None = Field(None, description="Air temperature of the zone above limits")
     outdoor: TemperatureBand | None = Field(None, description="Outdoor air temperature above limits")
     difference: DifferenceBand | None = Field(
-        None, description="Air temperature of the zone less that outdoors, above limits"
+        None, description="Air temperature of the zone less that outdoors or of the reference, above limits"
+    )
+    reference_zone: ZoneName | None = Field(
+        None, description="Name of the zone that 'difference' is taken to; none: the outdoor air"
     )
     indoor_below: LowBand | None = Field(None, description="Air temperature of the zone below limits")
     outdoor_below: LowBand | None = Field(None, description="Outdoor air temperature below limits")
@@ -306,6 +309,13 @@ class VentControl(Part):
                 "a control without conditions",
                 f"at least one of {', '.join(CONDITIONS)}",
                 "Add 'indoor: {open: 24, close: 22}', for example.",
+            )
+        if self.reference_zone is not None and (self.difference is None or self.reference_zone == self.zone):
+            raise problem(
+                "reference_zone "
+                + ("without difference" if self.difference is None else f"'{self.zone}', the zone itself"),
+                "the other zone of a 'difference'",
+                "Add 'difference: {open: 2, close: 1}', name another zone, or remove 'reference_zone'.",
             )
         return self
 

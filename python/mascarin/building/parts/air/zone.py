@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
 from mascarin.building import quantities as q
-from mascarin.building.base.names import ControlName, Name, ScheduleName, ZoneName
+from mascarin.building.base.names import ControlName, Name, ScheduleName
 from mascarin.building.base.number import Number, Remark, problem
 from mascarin.building.base.part import Part, Shorthand
 from mascarin.building.parts.air.flow_density import DENSITY, FlowDensity
@@ -18,11 +18,6 @@ from mascarin.building.parts.envelope.bridge import ThermalBridge
 from mascarin.building.parts.envelope.measured_values import Driven
 from mascarin.building.parts.envelope.surface import Linearised, NoLongwave
 from mascarin.building.parts.materials.text_law import InfiltrationLaw
-
-BROWN_SOLVASON = "Brown & Solvason 1962, doi:10.1016/0017-9310(62)90184-9 (two-way flow through a door)"
-ASHRAE_OPENING = (
-    "ASHRAE Handbook of Fundamentals 2017, ch. 16, eqs. 37, 38 (flow through openings by wind and buoyancy)"
-)
 
 
 class Infiltration(Part):
@@ -85,9 +80,9 @@ class Gain(Driven):
 
     Examples
     --------
-    >>> people = Gain(power=200, radiative=0.5, schedule="presence")
-    >>> float(people.radiative)
-    0.5
+    >>> people = Gain(power=240, activity=120, radiative=0.5, schedule="presence")
+    >>> float(people.activity)
+    120.0
     >>> heater = Gain(column="P_heater", unit="kW", radiative=0.3)
     >>> heater.course.name
     'P_heater [kW]'
@@ -96,13 +91,19 @@ class Gain(Driven):
     NUMBER: ClassVar = "power"
     KIND: ClassVar = "power"
     advice: ClassVar[Mapping[str, str]] = {
-        "latent": "Air is dry here: only sensible heat is simulated. Leave the latent part out of the power.",
+        "latent": "The power is sensible heat; of people write all heat as 'power:', with 'activity:'.",
+        "persons": "Write the heat of all people as 'power:', and 'activity:' [W] of one of them.",
         "convective": "What is not 'radiative' goes to the air: write 'radiative:' alone.",
     }
 
     power: q.GainPower | None = None
     unit: Literal["W", "kW"] | None = Field(None, description="Unit of the column; none: W")
     radiative: q.Radiative = Number(0.0, source=Remark("not given: all of it goes to the air"), assumed=True)
+    activity: q.Activity | None = Field(
+        None,
+        description="Heat of the activity of a person [W]: the power is then all heat of people, and its "
+        "sensible part at the air temperature counts; none: all of the power counts",
+    )
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the power; none: always 1"
     )
@@ -405,88 +406,3 @@ class Zone(Part):
         """Heating and cooling, where there are any."""
         both = {"heating": self.heating, "cooling": self.cooling}
         return {name: plant for name, plant in both.items() if plant is not None}
-
-
-class Door(Part):
-    """A door or another large opening through which a temperature difference drives air both ways.
-
-    ``C_d W H/3 sqrt(g H |dT|/T)`` flows in each direction.
-
-    Examples
-    --------
-    >>> Door(width=0.9, height=2)
-    Door(width=0.9 m, height=2 m, discharge=0.65, open=1)
-    """
-
-    width: q.DoorWidth
-    height: q.DoorHeight
-    discharge: q.Discharge = Number(0.65, source=BROWN_SOLVASON, assumed=True)
-    open: q.OpenFraction = Number(1.0, source=Remark("not given: fully open"))
-
-
-class AirPath(Driven):
-    """Air between two zones: the same flow both ways, a flow from one to the other, or through a door.
-
-    Examples
-    --------
-    >>> AirPath(between=("office", "corridor"), flow=0.02)
-    AirPath(between=[office, corridor], flow=0.02 m3/s, one_way=False)
-    >>> AirPath(between=("office", "corridor"), flow=0.02, one_way=True).one_way
-    True
-    >>> AirPath(between=("office", "corridor"), door={"width": 0.9, "height": 2}).flow is None
-    True
-    """
-
-    NUMBER: ClassVar = "flow"
-    KIND: ClassVar = "flow"
-
-    between: tuple[ZoneName, ZoneName] = Field(description="Names of the two zones")
-    flow: q.VolumeFlow | None = None
-    unit: Literal["m3/s", "m3/h", "L/s"] | None = Field(None, description="Unit of the column; none: m3/s")
-    one_way: bool = Field(
-        False, description="Whether air flows from the first zone to the second, driven by fans"
-    )
-    door: Door | None = Field(None, description="Flow by temperature difference; none: a given flow")
-    density: FlowDensity | None = Field(None, description=DENSITY)
-    schedule: ScheduleName | None = Field(
-        None, description="Schedule of the fraction of the flow; none: always 1"
-    )
-
-    def _needs_none(self) -> bool:
-        return self.door is not None
-
-    @model_validator(mode="after")
-    def _two(self) -> AirPath:
-        if self.between[0] == self.between[1]:
-            raise problem(f"'{self.between[0]}' twice", "two different zones", "Name the other zone.")
-        stated = "flow" if self.flow is not None else "column" if self.column is not None else ""
-        stated = stated or ("one_way" if self.one_way else "density" if self.density is not None else "")
-        if self.door is not None and stated:
-            raise problem(
-                f"door and {stated}",
-                "one of them: the flow through a door follows from temperatures",
-                "Describe the other flow as an air path of its own.",
-            )
-        return self
-
-
-class Opening(Part):
-    """An opening to outdoors, with a flow of air by wind and buoyancy.
-
-    Examples
-    --------
-    >>> Opening(zone="attic", area=0.02, height=0.3)
-    Opening(zone=attic, area=0.02 m2, height=0.3 m, discharge=0.65, wind_coefficient=0.3)
-    """
-
-    zone: ZoneName = Field(description="Name of the zone")
-    area: q.OpeningArea
-    height: q.OpeningHeight
-    discharge: q.Discharge = Number(0.65, source=ASHRAE_OPENING, assumed=True)
-    wind_coefficient: q.WindCoefficient = Number(0.3, source=ASHRAE_OPENING, assumed=True)
-    schedule: ScheduleName | None = Field(
-        None, description="Schedule of the fraction of the area that is open; none: always 1"
-    )
-    control: ControlName | None = Field(
-        None, description="Name of the control that opens and closes it; none: not controlled"
-    )
