@@ -95,7 +95,20 @@ def _checked(file: Path, check_sun: bool, shift: str | None) -> Climate:
         raise InputError(
             f"{file}: no such file; give the path from the folder you work in, or shipped:NAME. {hint}"
         )
-    climate = read_weather(file, check_sun=check_sun, shift=shift)
+    try:
+        climate = read_weather(file, check_sun=check_sun, shift=shift)
+    except InputError as error:
+        from mascarin.building.files.recognition import described
+
+        known = described(file)
+        # A damaged EPW or TMY3 is still one.
+        if known is None or (
+            file.suffix.lower() in (".epw", ".csv", ".tm2") and "seven fields" not in str(error)
+        ):
+            raise
+        raise InputError(
+            f"{file}: found {known.what}; expected an EPW file, TMY3 as CSV, or shipped:NAME. {known.remedy}"
+        ) from None
     if climate.site is None:
         return climate
     completed = climate.completed()

@@ -14,6 +14,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 from mascarin._io import display
 from mascarin.building.base.docstrings import documented, signature_of
 from mascarin.building.base.error_texts import explained
+from mascarin.building.base.fixed_mapping import fixed
 from mascarin.building.base.number import (
     CHECK_SIGN,
     Number,
@@ -160,9 +161,11 @@ class Part(BaseModel, metaclass=PartType):
     def _explain(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         """Rewrite the errors of pydantic: found, expected, what to do."""
         try:
-            return handler(data)
+            part = handler(data)
         except ValidationError as error:
             raise merged([*cls._explained(error)]) from None
+        part._fix()
+        return part
 
     @classmethod
     def _explained(cls, error: ValidationError) -> Iterator[InitErrorDetails]:
@@ -241,6 +244,14 @@ class Part(BaseModel, metaclass=PartType):
         for name in self.__dict__.keys() - type(self).model_fields.keys():
             del self.__dict__[name]  # a cached property, worked out without these values
         self.__dict__.update(values)
+        self._fix()
+
+    def _fix(self) -> None:
+        """Let no mapping of the part be changed."""
+        values = self.__dict__
+        for name, value in values.items():
+            if type(value) is dict:
+                values[name] = fixed(value)
 
 
 def cached_on(part: Part, key: str, make: Callable[[], Result]) -> Result:

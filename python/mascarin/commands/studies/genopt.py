@@ -62,8 +62,15 @@ def optimize(
     int
         Exit code.
     """
-    from mascarin.errors import InUse, MascarinError
+    from mascarin.building.files.recognition import GENOPT, described
+    from mascarin.errors import InputError, InUse, MascarinError
 
+    known = described(project)
+    if known is not None and known.what != GENOPT:
+        raise InputError(
+            f"{project}: found {known.what}; expected the ini file of a GenOpt project: "
+            f"{known.remedy.removesuffix('.')}"
+        )
     try:
         return _optimize(
             project,
