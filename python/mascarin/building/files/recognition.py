@@ -10,9 +10,7 @@ from typing import Any, Final, NamedTuple
 GENOPT: Final = "a file of GenOpt"
 #: Characters of a file that are looked at.
 _HEAD = 20_000
-_IDF = re.compile(
-    r"^\s*(version|timestep|building|zone|globalgeometryrules)\s*,", re.IGNORECASE | re.MULTILINE
-)
+_IDF = re.compile(r"^\s*(version|timestep|building|zone)\s*,", re.IGNORECASE | re.MULTILINE)
 _GENOPT = re.compile(r"^\s*(Vary|OptimizationSettings|Simulation)\s*\{", re.MULTILINE)
 
 
@@ -70,8 +68,8 @@ def recognized(text: str, file: str) -> Recognized | None:
         ):
             return Recognized(
                 "a table, as loggers write them",
-                f"'mascarin new wall' and 'new cell' make a study of it with --data {file}; runs take it with "
-                "--weather and --column, or --measurements.",
+                f"'mascarin new wall' and 'new cell' make a study of it with --data {file}; runs take it "
+                "with --weather and --column, or --measurements.",
             )
     return None
 
