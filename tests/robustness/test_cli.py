@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import importlib
 import inspect
-import re
 import io
+import re
 import subprocess
 import sys
 import warnings

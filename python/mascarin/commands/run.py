@@ -289,7 +289,7 @@ def _print_lines(warnings: Sequence[str]) -> None:
 
 def _write_report(file: Path, simulation: Simulation, results: Results, inputs: Mapping[str, Path]) -> None:
     from mascarin.building import check
-    from mascarin.building.rooms import rooms
+    from mascarin.building.rooms import lived_in, rooms
     from mascarin.pages.run.page import Notes, write
 
     start = "warning: "
@@ -298,7 +298,10 @@ def _write_report(file: Path, simulation: Simulation, results: Results, inputs: 
         outdoors=simulation.weather("air_temperature"),
         warnings=[line.removeprefix(start) for line in lines if line.startswith(start)],
         inputs=[(name, str(path)) for name, path in inputs.items()],
-        rooms=rooms(simulation.building),
+        rooms=lived_in(simulation.building),
+        others="cavities"
+        if lived_in(simulation.building) == rooms(simulation.building)
+        else "zones without windows, gains and loads",
     )
     write(file, results, notes)
     print(f"wrote {file}", file=sys.stderr)
