@@ -83,7 +83,7 @@ def verdict(results: DesignResults) -> list[str]:
         said.append("No single design is first in all climates; the table below gives the first of each.")
     count = len(warnings(results))
     if count:
-        said.append(f"{'One warning' if count == 1 else f'{count} warnings'} about the runs: below, first.")
+        said.append(f"{'One warning' if count == 1 else f'{count} warnings'} about the runs: see below.")
     return said
 
 
