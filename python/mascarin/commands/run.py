@@ -94,7 +94,7 @@ def run(
         Start of the period, such as 2012-09-20 or "2012-09-20 12:00", local time. Default: the start
         of the weather file.
     end : str
-        End of the period. Default: the end of the weather file.
+        End of the period. Default: the last whole step of the weather file.
     interval : str
         Time between the written values, such as 1h; independent of the time step. Default: the time step.
     outputs : list of str
