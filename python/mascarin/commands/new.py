@@ -112,6 +112,9 @@ def new(
             f"--{beside[0]}: found it for a {kind}, which has no such option; expected some of "
             f"--{', --'.join(sorted(_OPTIONS[kind]))}"
         )
+    for name, value in stated.items():
+        if any(not str(text).strip() for text in (value if isinstance(value, list) else [value])):
+            raise InputError(f"--{name}: found an empty text; expected one with words. Leave the option out")
     files, weather = (_wall if kind == "wall" else _room)(kind, what, stated)
     _write(out or Path(kind), files, data, weather)
 
