@@ -299,7 +299,7 @@ def _write_report(file: Path, simulation: Simulation, results: Results, inputs: 
         warnings=[line.removeprefix(start) for line in lines if line.startswith(start)],
         inputs=[(name, str(path)) for name, path in inputs.items()],
         rooms=lived_in(simulation.building),
-        others="cavities"
+        other_zones="cavities"
         if lived_in(simulation.building) == rooms(simulation.building)
         else "zones without windows, gains and loads",
     )

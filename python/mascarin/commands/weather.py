@@ -100,14 +100,14 @@ def _checked(file: Path, check_sun: bool, shift: str | None) -> Climate:
     except InputError as error:
         from mascarin.building.files.recognition import described
 
-        known = described(file)
+        file_kind = described(file)
         # A damaged EPW or TMY3 is still one.
-        if known is None or (
+        if file_kind is None or (
             file.suffix.lower() in (".epw", ".csv", ".tm2") and "seven fields" not in str(error)
         ):
             raise
         raise InputError(
-            f"{file}: found {known.what}; expected an EPW file, TMY3 as CSV, or shipped:NAME. {known.remedy}"
+            f"{file}: found {file_kind.what}; expected an EPW file, TMY3 as CSV, or shipped:NAME. {file_kind.remedy}"
         ) from None
     if climate.site is None:
         return climate

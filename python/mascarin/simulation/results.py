@@ -111,11 +111,11 @@ class Results(Mapping[str, "xr.DataArray"]):
         InputError
             It was not recorded; the text names the nearest ones.
         """
-        from mascarin.simulation.records.series import Series
+        from mascarin.simulation.records.series import RunSeries
 
         position = self._position(name)
         output = self.outputs[position]
-        return Series(
+        return RunSeries(
             self.records[:, position],
             coords=labels.time_coordinates(self.index),
             dims="time",

@@ -43,12 +43,15 @@ immutable. Building.replace and with_values return a building with other values
         return type(self), (dict(self),)
 
 
-def fixed(value: Any) -> Any:
-    """A dict as one that cannot be changed; anything else as it is.
+def fixed(attributes: dict[str, Any]) -> dict[str, Any]:
+    """The attributes of a part with a `FixedMapping` in place of each dict; they are changed in place.
 
     Examples
     --------
-    >>> type(fixed({})).__name__, fixed(1)
-    ('FixedMapping', 1)
+    >>> [type(value).__name__ for value in fixed({"areas": {}, "number": 1}).values()]
+    ['FixedMapping', 'int']
     """
-    return FixedMapping(value) if type(value) is dict else value
+    for name, value in attributes.items():
+        if type(value) is dict:
+            attributes[name] = FixedMapping(value)
+    return attributes

@@ -1,4 +1,7 @@
-"""Base of the parts of a description: immutable, no unknown keys, errors with what to do."""
+"""Base of the parts of a description: immutable, no unknown keys, errors with what to do.
+
+Long because everything that all parts share, from their errors to how they are shown, is one class.
+"""
 
 from __future__ import annotations
 
@@ -164,7 +167,7 @@ class Part(BaseModel, metaclass=PartType):
             part = handler(data)
         except ValidationError as error:
             raise merged([*cls._explained(error)]) from None
-        part._fix()
+        fixed(part.__dict__)
         return part
 
     @classmethod
@@ -243,15 +246,7 @@ class Part(BaseModel, metaclass=PartType):
         """Set what the user did not give; only while the part is being made."""
         for name in self.__dict__.keys() - type(self).model_fields.keys():
             del self.__dict__[name]  # a cached property, worked out without these values
-        self.__dict__.update(values)
-        self._fix()
-
-    def _fix(self) -> None:
-        """Let no mapping of the part be changed."""
-        values = self.__dict__
-        for name, value in values.items():
-            if type(value) is dict:
-                values[name] = fixed(value)
+        self.__dict__.update(fixed(values))
 
 
 def cached_on(part: Part, key: str, make: Callable[[], Result]) -> Result:

@@ -57,7 +57,8 @@ def recognized(text: str, file: str) -> Recognized | None:
         )
     if _GENOPT.search(head):
         return Recognized(GENOPT, "'mascarin optimize' takes the ini file of a project.")
-    lines = [line for line in head.splitlines()[:-1] or head.splitlines() if line.strip()]
+    lines = [line for line in head.splitlines() if line.strip()]
+    lines = lines[:-1] if len(text) > _HEAD else lines  # the last one may be cut
     for separator in (",", ";", "\t"):
         counts = [line.count(separator) for line in lines[-3:]]
         if (

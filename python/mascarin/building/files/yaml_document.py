@@ -105,9 +105,9 @@ def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = 
             reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
             raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of {what}") from error
         document = _Document(str(file), blanks=blanks)
-        known = recognized(text, str(file))
-        if known is not None:
-            document.refuse_at_all(known.what, f"a YAML file of {what}", known.remedy)
+        file_kind = recognized(text, str(file))
+        if file_kind is not None:
+            document.refuse_at_all(file_kind.what, f"a YAML file of {what}", file_kind.remedy)
         return document.read(text), document.lines
 
     document = inherited(path, one, by_path=not blanks, file_keys=file_keys)

@@ -65,11 +65,11 @@ def optimize(
     from mascarin.building.files.recognition import GENOPT, described
     from mascarin.errors import InputError, InUse, MascarinError
 
-    known = described(project)
-    if known is not None and known.what != GENOPT:
+    file_kind = described(project)
+    if file_kind is not None and file_kind.what != GENOPT:
         raise InputError(
-            f"{project}: found {known.what}; expected the ini file of a GenOpt project: "
-            f"{known.remedy.removesuffix('.')}"
+            f"{project}: found {file_kind.what}; expected the ini file of a GenOpt project: "
+            f"{file_kind.remedy.removesuffix('.')}"
         )
     try:
         return _optimize(

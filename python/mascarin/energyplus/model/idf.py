@@ -275,9 +275,9 @@ def read(path: Path) -> IdfModel:
     """
     form = _SUFFIXES.get(path.suffix.casefold())
     if form is None:
-        known = described(path)
-        actual = f"a file '{path.suffix}'" if known is None else known.what
-        remedy = "" if known is None else f": {known.remedy.removesuffix('.')}"
+        file_kind = described(path)
+        actual = f"a file '{path.suffix}'" if file_kind is None else file_kind.what
+        remedy = "" if file_kind is None else f": {file_kind.remedy.removesuffix('.')}"
         raise InputError(f"{path}: found {actual}; expected .idf or .epJSON of EnergyPlus{remedy}")
     require_regular(path, _EXPECTED)
     if not path.is_file():

@@ -100,9 +100,11 @@ def warnings(results: DesignResults) -> list[str]:
         climate, _, words = line.partition(": ")
         of_climate = climate in {site.name for site in results.inputs.sites}
         climates.setdefault(words if of_climate else line, []).extend([climate] if of_climate else [])
-    every = len(results.inputs.sites)
+    climate_count = len(results.inputs.sites)
     return [
-        f"{'all climates' if len(names) == every > 1 else ', '.join(names)}: {words}" if names else words
+        f"{'all climates' if len(names) == climate_count > 1 else ', '.join(names)}: {words}"
+        if names
+        else words
         for words, names in ((words, list(dict.fromkeys(names))) for words, names in climates.items())
     ]
 

@@ -72,7 +72,7 @@ class Notes(NamedTuple):
         Files and options, by name.
     rooms : sequence of str
         Zones that are shown first; empty: all.
-    others : str
+    other_zones : str
         What the other zones are, such as 'cavities'.
     """
 
@@ -80,7 +80,7 @@ class Notes(NamedTuple):
     warnings: Sequence[str] = ()
     inputs: Sequence[tuple[str, str]] = ()
     rooms: Sequence[str] = ()
-    others: str = "cavities"
+    other_zones: str = "cavities"
 
     def in_room(self, output: str) -> bool:
         """Whether an output is that of a room."""
@@ -198,7 +198,7 @@ def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
     for kind in dict.fromkeys((*_FIGURES, *requested_kinds)):  # those that were asked for follow
         outputs = [(k, output) for k, output in enumerate(results.outputs) if output.kind == kind]
         of_rooms = [(k, output) for k, output in outputs if notes.in_room(output.name)]
-        for title, part in _apart(kind, outputs, of_rooms, notes.others):
+        for title, part in _apart(kind, outputs, of_rooms, notes.other_zones):
             curves = [
                 (output.name.rpartition(".")[0], results.records[:, k], output.mean) for k, output in part
             ]
@@ -213,14 +213,14 @@ def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
 
 
 def _apart(
-    kind: str, outputs: list[_Numbered], of_rooms: list[_Numbered], others: str
+    kind: str, outputs: list[_Numbered], of_rooms: list[_Numbered], other_zones: str
 ) -> list[tuple[str, list[_Numbered]]]:
     """Air temperatures of rooms apart from those of other zones; all else together."""
     title = KINDS[kind].label
     if kind not in _OF_ZONES or len(of_rooms) in (0, len(outputs)):
         return [(title, outputs)]
     beside = [entry for entry in outputs if entry not in of_rooms]
-    return [(title, of_rooms), (f"{title} of {others}", beside)]
+    return [(title, of_rooms), (f"{title} of {other_zones}", beside)]
 
 
 def _figure(

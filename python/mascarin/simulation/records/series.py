@@ -12,7 +12,7 @@ import xarray as xr
 from mascarin.errors import InputError
 
 
-class Series(xr.DataArray):  # type: ignore[no-untyped-call]
+class RunSeries(xr.DataArray):  # type: ignore[no-untyped-call]
     """A series over ``time`` (UTC), with the coordinate ``local_time`` and the attribute ``timezone``.
 
     `sel` takes times with an offset or a zone. A text or a date without one is refused, because it could be
@@ -47,45 +47,45 @@ class Series(xr.DataArray):  # type: ignore[no-untyped-call]
         labels = {**(indexers or {}), **indexers_kwargs}
         if "time" not in labels:
             return super().sel(labels, method, tolerance, drop)
-        wanted = labels["time"]
-        labels["time"] = self._in_utc(wanted)
+        label = labels["time"]
+        labels["time"] = self._in_utc(label)
         try:
             return super().sel(labels, method, tolerance, drop)
         except KeyError:
             raise InputError(
-                f"time: found {wanted!r}; expected the time of a record from {self._clock(0)} to "
+                f"time: found {label!r}; expected the time of a record from {self._clock(0)} to "
                 f"{self._clock(-1)}, or method='nearest'"
             ) from None
 
-    def _in_utc(self, wanted: Any) -> Any:
+    def _in_utc(self, label: Any) -> Any:
         """A label, a slice or a list of them in UTC without a zone, as the coordinate is."""
-        if isinstance(wanted, slice):
-            return slice(self._in_utc(wanted.start), self._in_utc(wanted.stop), wanted.step)
-        if isinstance(wanted, list | tuple):
-            return [self._in_utc(label) for label in wanted]
-        if isinstance(wanted, pd.DatetimeIndex) and wanted.tz is not None:
-            return wanted.tz_convert("UTC").tz_localize(None)
-        if not isinstance(wanted, str | datetime):
-            return wanted
+        if isinstance(label, slice):
+            return slice(self._in_utc(label.start), self._in_utc(label.stop), label.step)
+        if isinstance(label, list | tuple):
+            return [self._in_utc(each) for each in label]
+        if isinstance(label, pd.DatetimeIndex) and label.tz is not None:
+            return label.tz_convert("UTC").tz_localize(None)
+        if not isinstance(label, str | datetime):
+            return label
         try:
-            stamp = pd.Timestamp(wanted)
+            stamp = pd.Timestamp(label)
         except ValueError:
-            raise InputError(f"time: found {wanted!r}; expected a time such as '{self._clock(0)}'") from None
+            raise InputError(f"time: found {label!r}; expected a time such as '{self._clock(0)}'") from None
         if stamp.tz is None:
             raise InputError(
-                f"time: found {str(wanted)!r} without an offset; expected one, because the coordinate time "
+                f"time: found {str(label)!r} without an offset; expected one, because the coordinate time "
                 f"is UTC: '{self._clock(0)}' for the local clock, or Z for UTC. Days of the local clock are "
                 "taken by to_dataframe().loc"
             )
         return stamp.tz_convert("UTC").tz_localize(None)
 
-    def _clock(self, place: int) -> str:
+    def _clock(self, row: int) -> str:
         """Time of a record: on the local clock with its offset, where the series still has it."""
-        time = self.indexes["time"][place]
+        time = self.indexes["time"][row]
         local = self.coords.get("local_time")
         if local is None or local.dims != ("time",):
             return f"{time:%Y-%m-%d %H:%M}Z"
-        clock = pd.Timestamp(local.to_numpy()[place])
+        clock = pd.Timestamp(local.to_numpy()[row])
         minutes = round((clock - time).total_seconds() / 60.0)
         sign = "-" if minutes < 0 else "+"
         return f"{clock:%Y-%m-%d %H:%M}{sign}{abs(minutes) // 60:02d}:{abs(minutes) % 60:02d}"
