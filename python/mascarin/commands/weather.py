@@ -107,7 +107,8 @@ def _checked(file: Path, check_sun: bool, shift: str | None) -> Climate:
         ):
             raise
         raise InputError(
-            f"{file}: found {file_kind.what}; expected an EPW file, TMY3 as CSV, or shipped:NAME. {file_kind.remedy}"
+            f"{file}: found {file_kind.what}; expected an EPW file, TMY3 as CSV, or shipped:NAME. "
+            f"{file_kind.remedy}"
         ) from None
     if climate.site is None:
         return climate
