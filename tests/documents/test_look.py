@@ -444,3 +444,18 @@ def test_ctrl_c_ends_the_page_with_130(saved: tuple[Path, Path], tmp_path: Path)
         finally:
             guard.cancel()
             process.kill()
+
+
+def test_an_attic_is_shown_apart_from_the_rooms(tmp_path: Path) -> None:
+    """It is no cavity, and 20 K warmer than the rooms: a common axis would hide what people feel."""
+    file = tmp_path / "run.html"
+    arguments = ["--weather", "shipped:saint-denis", "--start", "01-08", "--end", "01-09", "--step", "30min"]
+    assert cli.main(["run", str(HOUSE), *arguments, "--report", str(file)]) == 0
+    text = file.read_text(encoding="utf-8")
+    rooms_first, _, others = text.partition("Air temperature of zones without windows, gains and loads")
+    assert others
+    assert 'class="swatch-line s0" aria-hidden="true"></span>attic' in others
+    assert "</span>attic" not in rooms_first
+    # Sentences about the weather follow each other; they are no list with commas.
+    assert ".," not in text
+    assert "step seconds" not in text

@@ -10,7 +10,7 @@ import pytest
 
 import report_example
 from mascarin.pages.study import write
-from mascarin.pages.study.page import coverage_facts
+from mascarin.pages.study.page import _errors, coverage_facts
 from mascarin.pages.study.sections import summary
 from mascarin.study_document.analysis import ContradictionEntry
 from mascarin.study_document.document import StudyDocument
@@ -136,3 +136,37 @@ def test_a_link_unfolds_what_it_leads_to(page: Page, report: Path) -> None:
     page.evaluate("location.hash = '#table-parameters'")
     page.wait_for_selector("#table-parameters")
     assert page.locator("details.appendix[open]").count() == 2
+
+
+def test_the_verdict_has_the_mean_of_the_error_beside_its_scatter() -> None:
+    """A sensor that is 0.6 K too low in the mean scatters by little: both are said, and of which days."""
+    errors = {"bias": -0.6, "sd": 0.04, "rmse": 0.6, "n": 9}
+    other = {"bias": 0.1, "sd": 0.08, "rmse": 0.13, "n": 9}
+    periods = {"blind": {"label": "Blind days", "note": "not used for the calibration"}}
+
+    def said(**changes: Any) -> str:
+        sensors = {
+            "room_air": {"blind": {"fitted": {**errors, **changes}}}, "steel": {"blind": {"fitted": other}}
+        }  # fmt: skip
+        complete = study(criteria=[criterion(0.5)], sensors=sensors, periods=periods)
+        [fact] = [fact for fact in _errors(complete) if "Error" in fact["name"]]
+        assert "mean −0.60 to 0.10" in fact["note"] or changes
+        return summary.verdict(complete)[0]
+
+    base = said()
+    assert "a mean of −0.60 to 0.10" in base
+    assert "a standard deviation of 0.04 to 0.08" in base
+    assert base.endswith("depending on the sensor (blind days: not used for the calibration).")
+    assert len({base, said(bias=-0.5), said(sd=0.03)}) == 3
+
+
+def test_every_parameter_at_an_end_is_named() -> None:
+    def named(count: int) -> str:
+        entries = {f"zones.z{k}.infiltration": {"fitted": 0.0, "at_bound": True} for k in range(count)}
+        [step] = summary.next_steps(study(parameters=entries))
+        return step
+
+    assert named(1).endswith("is at the end of the stated range: measure it, state a wider range with its "
+                             "source, or look for a cause outside of the parameters.")  # fmt: skip
+    assert "z0 · infiltration and z1 · infiltration are at the ends of their stated ranges" in named(2)
+    assert "z3 · infiltration and 2 more are at the ends" in named(6)

@@ -3,6 +3,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import io
+import re
 import subprocess
 import sys
 import warnings
@@ -45,6 +46,10 @@ def test_every_command_has_help(command: cli.Command, capsys: pytest.CaptureFixt
     out = capsys.readouterr().out
     assert f"mascarin {command.name}" in out
     assert " ".join(command.help.split()[:3]) in " ".join(out.split())
+    # Every option says what it is, and none means nothing, as the opposite of a pair of numbers.
+    silent = r"^│ +\*? *--[\w-]+(?: -\w)? (?:STR|PATH|INT|FLOAT|CHOICE)(?:\.\.\.)? *│$"
+    assert re.findall(silent, out, re.MULTILINE) == []
+    assert "--empty-" not in out
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda c: c.name)

@@ -49,7 +49,8 @@ def bestest(
         Numbers of cases, such as 600 900FF, and your own building files (.yaml), which are run in the
         same way and compared with --ranges. Default: all 39 cases.
     weather : Path
-        The standard's weather file, 725650TYCST.epw.
+        The standard's weather file, 725650TYCST.epw. Default: that of the folder MASCARIN_DATA or of the
+        cache, else it is downloaded once.
     ranges : Path
         CSV file with ranges for your own building files: columns case (name of the file), quantity (such as
         annual_heating, or room.peak_cooling), unit, min and max, or one column for each program.

@@ -54,7 +54,7 @@ def explore(
     stamps: Stamps = "start",
     parameters: Sliders = None,
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
-    band: tuple[float, float] = (20.0, 26.0),
+    band: Annotated[tuple[float, float], Parameter(negative="")] = (20.0, 26.0),
     start: str | None = None,
     end: str | None = None,
     step: Step = "15min",

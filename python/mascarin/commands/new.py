@@ -87,13 +87,18 @@ def new(
         Logger file of a cell or wall; it is copied into the folder.
     timezone : str
         Time zone of its clock, such as UTC+4.
-    inside, outside, irradiance : str
-        Columns of a wall: air temperature on both sides, irradiance on its plane.
+    inside : str
+        Column with the air temperature on the inner side of a wall.
+    outside : str
+        Column with the air temperature on the outer side of a wall.
+    irradiance : str
+        Column with the solar irradiance on the plane of a wall.
     column : list of str
         Weather of a cell: CHANNEL=COLUMN, such as air_temperature=T_out; may be repeated.
     sensor : list of str
         What is compared: COLUMN=OUTPUT of a cell, such as T_room=room.air_temperature; COLUMN=PLACE of a
-        wall, such as T_wall=inside or T_mid=55mm from the inner surface; may be repeated.
+        wall: its surface (T_wall=inside), or a depth that is counted from the inner surface (T_mid=55mm); may
+        be repeated.
     """
     options = {
         "roof": roof, "ceiling": ceiling, "walls": walls, "floor": floor, "gap": gap, "window": window,
@@ -107,6 +112,9 @@ def new(
             f"--{beside[0]}: found it for a {kind}, which has no such option; expected some of "
             f"--{', --'.join(sorted(_OPTIONS[kind]))}"
         )
+    for name, value in stated.items():
+        if any(not str(text).strip() for text in (value if isinstance(value, list) else [value])):
+            raise InputError(f"--{name}: found an empty text; expected one with words. Leave the option out")
     files, weather = (_wall if kind == "wall" else _room)(kind, what, stated)
     _write(out or Path(kind), files, data, weather)
 

@@ -94,7 +94,7 @@ def run(
         Start of the period, such as 2012-09-20 or "2012-09-20 12:00", local time. Default: the start
         of the weather file.
     end : str
-        End of the period. Default: the end of the weather file.
+        End of the period. Default: the last whole step of the weather file.
     interval : str
         Time between the written values, such as 1h; independent of the time step. Default: the time step.
     outputs : list of str
@@ -289,7 +289,7 @@ def _print_lines(warnings: Sequence[str]) -> None:
 
 def _write_report(file: Path, simulation: Simulation, results: Results, inputs: Mapping[str, Path]) -> None:
     from mascarin.building import check
-    from mascarin.building.rooms import rooms
+    from mascarin.building.rooms import lived_in, rooms
     from mascarin.pages.run.page import Notes, write
 
     start = "warning: "
@@ -298,7 +298,10 @@ def _write_report(file: Path, simulation: Simulation, results: Results, inputs: 
         outdoors=simulation.weather("air_temperature"),
         warnings=[line.removeprefix(start) for line in lines if line.startswith(start)],
         inputs=[(name, str(path)) for name, path in inputs.items()],
-        rooms=rooms(simulation.building),
+        rooms=lived_in(simulation.building),
+        other_zones="cavities"
+        if lived_in(simulation.building) == rooms(simulation.building)
+        else "zones without windows, gains and loads",
     )
     write(file, results, notes)
     print(f"wrote {file}", file=sys.stderr)

@@ -95,7 +95,21 @@ def _checked(file: Path, check_sun: bool, shift: str | None) -> Climate:
         raise InputError(
             f"{file}: no such file; give the path from the folder you work in, or shipped:NAME. {hint}"
         )
-    climate = read_weather(file, check_sun=check_sun, shift=shift)
+    try:
+        climate = read_weather(file, check_sun=check_sun, shift=shift)
+    except InputError as error:
+        from mascarin.building.files.recognition import described
+
+        file_kind = described(file)
+        # A damaged EPW or TMY3 is still one.
+        if file_kind is None or (
+            file.suffix.lower() in (".epw", ".csv", ".tm2") and "seven fields" not in str(error)
+        ):
+            raise
+        raise InputError(
+            f"{file}: found {file_kind.what}; expected an EPW file, TMY3 as CSV, or shipped:NAME. "
+            f"{file_kind.remedy}"
+        ) from None
     if climate.site is None:
         return climate
     completed = climate.completed()

@@ -17,6 +17,7 @@ from mascarin._io.arguments import kind_of, mapping_of
 from mascarin._io.locks import FolderLock
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.members import members as read_members
+from mascarin.ensemble.objectives import Statistic
 from mascarin.ensemble.store import Store
 from mascarin.ensemble.work import (
     CLOSURE,
@@ -68,7 +69,7 @@ def sweep(
     measurements: Measurements | None = None,
     progress: ProgressOption = None,
     precision: Precision = "double",
-    objectives: Mapping[str, Objective] | None = None,
+    objectives: Mapping[str, Objective | str] | None = None,
     workers: int | Executor | None = None,
 ) -> xr.Dataset:
     """Run a building once for every row of samples; the results of a member do not depend on the others.
@@ -87,10 +88,11 @@ def sweep(
     precision : str
         ``double``, or ``single`` to screen many members: twice as many at a time, within some thousandths of
         a kelvin. The difference is measured in some members.
-    objectives : mapping of str to callable, optional
-        What to keep of each member instead of its series: functions of a Dataset of the outputs over (member,
-        time) that give one number a member, such as ``lambda run: run["room.air_temperature"].max("time")``.
-        With workers they must be functions of a module, which can be sent to other processes.
+    objectives : mapping of str to str or callable, optional
+        What to keep of each member instead of its series: texts such as ``max:room.air_temperature`` (min,
+        mean, max, sd) and ``above:26:room.operative_temperature`` (above, below: hours), or functions of a
+        Dataset of the outputs over (member, time) that give one number a member. Outputs of texts are
+        recorded without being asked for. With workers, functions must be those of a module.
     workers : int or concurrent.futures.Executor, optional
         Processes of this machine, or an executor: of dask.distributed (``client.get_executor()``), of
         mpi4py.futures, or any other. Default: the threads of this process.
@@ -183,7 +185,7 @@ def sweep_into(
     measurements: Measurements | None = None,
     progress: ProgressOption = None,
     precision: Precision = "double",
-    objectives: Mapping[str, Objective] | None = None,
+    objectives: Mapping[str, Objective | str] | None = None,
     workers: int | Executor | None = None,
     seed: int | None = None,
     ranges: Mapping[str, tuple[float, float]] | None = None,
@@ -280,12 +282,32 @@ def _said(inputs: EnsembleInputs, members: Members, closure: npt.NDArray[np.floa
     return [*map(str, _differences(inputs, members)), *run_in_double(closure)]
 
 
+def _functions(objectives: Mapping[str, Objective | str] | None) -> dict[str, Objective]:
+    """Objectives as functions: texts are read."""
+    expected = "texts or functions by name: {'peak': 'max:room.air_temperature'}"
+    stated = mapping_of("objectives", objectives, expected)
+    return {name: Statistic.read(each) if isinstance(each, str) else each for name, each in stated.items()}
+
+
+def _recorded(
+    outputs: Sequence[str] | None, objectives: Mapping[str, Objective], building: Building
+) -> Sequence[str] | None:
+    """What is recorded: what was asked for, and what statistics need beside it."""
+    needed = [each.output for each in objectives.values() if isinstance(each, Statistic)]
+    if not needed:
+        return outputs
+    if outputs is None and len(needed) == len(objectives):
+        return list(dict.fromkeys(needed))
+    usual = [output.name for output in building.outputs() if output.usual] if outputs is None else outputs
+    return list(dict.fromkeys([*usual, *needed]))
+
+
 def _prepared(
     building: Building,
     climate: Climate,
     samples: Mapping[str, npt.ArrayLike] | pd.DataFrame,
     options: RunOptions,
-    objectives: Mapping[str, Objective] | None,
+    objectives: Mapping[str, Objective | str] | None,
     precision: Precision,
     ranges: Mapping[str, tuple[float, float]] | None = None,
 ) -> tuple[EnsembleInputs, Members]:
@@ -300,7 +322,8 @@ def _prepared(
             "{'zones.room.volume': [30, 40]}, or a pandas.DataFrame with paths as columns"
         )
     require_precision(precision, options.scheme)
-    functions = mapping_of("objectives", objectives, "functions by name: {'peak': function}")
+    functions = _functions(objectives)
+    options = replace(options, outputs=_recorded(options.outputs, functions, building))
     building = in_climate(
         building,
         climate,

@@ -47,7 +47,7 @@ class Results(Mapping[str, "xr.DataArray"]):
     """The series of a run, a mapping from the names of outputs to series.
 
     ``results["room.air_temperature"]`` is an xarray.DataArray over ``time`` (UTC) with the coordinate
-    ``local_time``. Names and aliases of outputs are keys.
+    ``local_time``; its `sel` takes times with an offset. Names and aliases of outputs are keys.
 
     Parameters
     ----------
@@ -111,11 +111,11 @@ class Results(Mapping[str, "xr.DataArray"]):
         InputError
             It was not recorded; the text names the nearest ones.
         """
-        import xarray as xr
+        from mascarin.simulation.records.series import RunSeries
 
         position = self._position(name)
         output = self.outputs[position]
-        return xr.DataArray(
+        return RunSeries(
             self.records[:, position],
             coords=labels.time_coordinates(self.index),
             dims="time",

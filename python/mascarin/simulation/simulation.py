@@ -133,7 +133,7 @@ class Simulation(VectorRuns):
         self.measured = None if measurements is None else summary_of_measurements(measurements)
         self.scheme: Scheme = scheme
         self.step_seconds = seconds_of(step)
-        first, last = prepare.span(climate, start, end)
+        first, last = prepare.span(climate, start, end, self.step_seconds)
         self.times = Times(first, last, self.step_seconds, climate.grid.zone)
         self.outputs = prepare.chosen_outputs(self.building, outputs)
         self._replaced = prepare.changed_parameters(building, self.building, options.parameters)

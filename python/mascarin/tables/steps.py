@@ -103,7 +103,7 @@ def _count(first: float, last: float, step: float, stages: int) -> int:
     )
     if count < 1 or abs(count * step - (last - first)) > 1e-6:
         raise InputError(
-            f"period: {last - first:g} s from start to end is not a whole number of steps of {step:g} s, at "
-            "least one; move the end or change the step."
+            f"period: {last - first:.12g} s from start to end is not a whole number of steps of {step:g} s, "
+            "at least one; move the end or change the step."
         )
     return count

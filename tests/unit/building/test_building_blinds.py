@@ -102,7 +102,7 @@ def day(building: Building, **columns: Any) -> Results:
 
 
 def noon(results: Results, name: str) -> float:
-    return float(results[name].sel(time="2001-01-02 12:00"))
+    return float(results[name].sel(time="2001-01-02 12:00Z"))
 
 
 @pytest.mark.parametrize("position", ["outside", "inside"])

@@ -198,7 +198,7 @@ def test_assumptions_are_listed() -> None:
     assert any("site.sky: infrared of the weather file, else martin_berdahl" in line for line in told)
     assert any("site.diffuse: perez" in line for line in told)
     assert any("zones.room: view factors by areas" in line for line in told)
-    assert any("zones.room.capacity_factor = 1 -" in line for line in told)
+    assert any("zones.room.capacity_factor = 1 (" in line for line in told)
 
 
 def test_melting_is_shown_by_its_width() -> None:

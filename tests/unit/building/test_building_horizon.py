@@ -53,7 +53,7 @@ def climate(direct: float, diffuse: float) -> Climate:
 
 def noon(building: Building, weather: Climate) -> np.ndarray[Any, np.dtype[np.float64]]:
     results = simulate(building, weather, step="1h", outputs=OUTPUTS)
-    return np.array([float(results[name].sel(time="2001-03-21 12:00")) for name in OUTPUTS])
+    return np.array([float(results[name].sel(time="2001-03-21 12:00Z")) for name in OUTPUTS])
 
 
 @pytest.mark.parametrize("degrees", [10.0, 35.0])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -292,3 +294,33 @@ def test_every_exported_part_describes_its_fields() -> None:
         fields = getattr(getattr(b, name), "model_fields", {})
         for field in fields.keys() - {"kind"}:
             assert f"\n{field} : " in text, (name, field)
+
+
+def test_mappings_of_a_building_cannot_be_changed() -> None:
+    building = cell()
+    before = building.to_dict()
+    changes: list[Callable[[dict[str, Any]], object]] = [
+        lambda names: names.__setitem__("x", 1),
+        lambda names: names.__delitem__(next(iter(names))),
+        lambda names: names.__ior__({"x": 1}),
+        lambda names: names.update(x=1),
+        lambda names: names.setdefault("x", 1),
+        lambda names: names.pop(next(iter(names))),
+        lambda names: names.popitem(),
+        lambda names: names.clear(),
+    ]
+    mappings: list[Any] = [getattr(building, name) for name in type(building).model_fields]
+    mappings += [next(iter(building.zones.values())).gains]
+    mappings = [mapping for mapping in mappings if isinstance(mapping, dict)]
+    assert len(mappings) > 5
+    for mapping in mappings:
+        for change in changes if mapping else changes[:1]:
+            with pytest.raises(InputError, match="immutable"):
+                change(mapping)
+    assert building.to_dict() == before
+    for again in (copy.deepcopy(building), pickle.loads(pickle.dumps(building))):  # noqa: S301
+        assert again == building
+        with pytest.raises(InputError, match="immutable"):
+            again.materials.clear()
+    # What is made of a mapping is one's own.
+    assert {**building.zones, "x": None}.keys() - building.zones.keys() == {"x"}

@@ -8,6 +8,8 @@ import pytest
 
 import mascarin as mc
 from mascarin import cli
+from mascarin.errors import InputError
+from mascarin.verification.bestest import weather as bestest_weather
 from mascarin.verification.bestest.catalogue import CASES
 
 WEATHER = Path("bestest") / "725650TYCST.epw"
@@ -26,7 +28,6 @@ def test_the_cases_are_listed_with_their_files(capsys: pytest.CaptureFixture[str
     ("words", "said"),
     [
         (["601"], "found '601'"),
-        (["600"], "--weather: not given"),
         (["600", "--weather", "no.epw"], "found no file 'no.epw'"),
         (["195", "--weather", "no.epw", "--workers", "0"], "--workers: found 0"),
         (["195", "--weather", "no.epw", "-o", "not/there"], "--out: found"),
@@ -129,3 +130,17 @@ def test_ranges_that_cannot_be_used_are_refused_before_the_runs(
     words = [str(mine), "--ranges", str(tmp_path / "own.csv"), "--weather", str(data_dir / WEATHER)]
     assert cli.main(["bestest", *words]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_without_weather_that_of_the_data_folder_is_taken(
+    monkeypatch: pytest.MonkeyPatch, data_dir: Path
+) -> None:
+    monkeypatch.setenv("MASCARIN_DATA", str(data_dir))
+    assert bestest_weather.read(None).file == WEATHER.name
+
+    def missing(name: str) -> Path:
+        raise InputError(f"data:{name}: cannot be downloaded")
+
+    monkeypatch.setattr(bestest_weather, "data_file", missing)
+    with pytest.raises(InputError, match=r"--weather: not given.*BESTEST-GSR.*cannot be downloaded"):
+        bestest_weather.read(None)

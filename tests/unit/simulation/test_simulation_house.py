@@ -120,7 +120,7 @@ def test_a_column_with_a_schedule() -> None:
     building = box({"room": zone}, schedules=phases)
     results = simulate(building, climate, step="15min", end="2001-01-05", outputs=["room.net_load"])
     assert results.energy.into["gains"] == pytest.approx(100 * 2 * 86400, rel=1e-9)
-    before = results["room.net_load"].sel(time=slice("2001-01-01", "2001-01-03 00:00"))
+    before = results["room.net_load"].sel(time=slice("2001-01-01 00:00Z", "2001-01-03 00:00Z"))
     assert float(abs(before).max()) == 0.0
     assert last(results, "room.net_load") == pytest.approx(30 * U * 18, rel=1e-4)
 

@@ -9,6 +9,7 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import mascarin as mc
@@ -192,3 +193,14 @@ def test_a_compiled_run_is_text_and_arrays() -> None:
 def test_a_simulation_has_a_short_description() -> None:
     text = repr(mc.Simulation(box(), box_climate(), **SHORT))
     assert text == ("<Simulation of 'box', 2001-07-01 00:00 to 2001-07-04 00:00, step 3600 s, 1 outputs>")
+
+
+def test_a_record_that_ends_within_a_step_is_run_to_its_last_whole_step() -> None:
+    climate = box_climate()
+    plain = mc.simulate(box(), climate, step="1h")
+    seven = mc.simulate(box(), climate, step="7h")
+    length = (plain.index[-1] - plain.index[0]) // pd.Timedelta("7h")
+    assert length * pd.Timedelta("7h") < plain.index[-1] - plain.index[0]
+    assert seven.index[-1] == plain.index[0] + length * pd.Timedelta("7h")
+    with pytest.raises(InputError, match="not a whole number of steps"):
+        mc.simulate(box(), climate, end=plain.index[-1], step="7h")

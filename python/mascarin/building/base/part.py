@@ -1,4 +1,7 @@
-"""Base of the parts of a description: immutable, no unknown keys, errors with what to do."""
+"""Base of the parts of a description: immutable, no unknown keys, errors with what to do.
+
+Long because everything that all parts share, from their errors to how they are shown, is one class.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 from mascarin._io import display
 from mascarin.building.base.docstrings import documented, signature_of
 from mascarin.building.base.error_texts import explained
+from mascarin.building.base.fixed_mapping import fixed
 from mascarin.building.base.number import (
     CHECK_SIGN,
     Number,
@@ -160,9 +164,11 @@ class Part(BaseModel, metaclass=PartType):
     def _explain(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         """Rewrite the errors of pydantic: found, expected, what to do."""
         try:
-            return handler(data)
+            part = handler(data)
         except ValidationError as error:
             raise merged([*cls._explained(error)]) from None
+        fixed(part.__dict__)
+        return part
 
     @classmethod
     def _explained(cls, error: ValidationError) -> Iterator[InitErrorDetails]:
@@ -240,7 +246,7 @@ class Part(BaseModel, metaclass=PartType):
         """Set what the user did not give; only while the part is being made."""
         for name in self.__dict__.keys() - type(self).model_fields.keys():
             del self.__dict__[name]  # a cached property, worked out without these values
-        self.__dict__.update(values)
+        self.__dict__.update(fixed(values))
 
 
 def cached_on(part: Part, key: str, make: Callable[[], Result]) -> Result:

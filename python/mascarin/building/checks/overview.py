@@ -395,7 +395,8 @@ def assumptions(building: Description) -> Iterator[str]:
     """Assumed values: numbers marked as assumed, and models chosen because none is given."""
     for number in parameters(building):
         if number.assumed:
-            yield f"{number.path} = {number.value:g} {number.unit} ({number.source or 'no source'})"
+            unit = "" if number.unit == "-" else f" {number.unit}"
+            yield f"{number.path} = {number.value:g}{unit} ({number.source or 'no source'})"
     outdoors = [item.side for item in every_side(building) if item.side.outdoors]
     if outdoors and "sky" not in building.site.model_fields_set:
         yield "site.sky: infrared of the weather file, else martin_berdahl, because none is given"

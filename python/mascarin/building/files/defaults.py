@@ -31,6 +31,11 @@ Put = Callable[[KeyPath, KeyPath], None]
 """Told the place of what was put in, and of the default that it is."""
 
 
+def names_a_building(data: Mapping[str, Any]) -> bool:
+    """Whether the content of a file is that of a study or a design study: it names a building."""
+    return "building" in data and "surfaces" not in data
+
+
 def require_building(data: Any) -> Any:
     """Refuse the content of a study or of a design study, which names a building.
 
@@ -44,7 +49,7 @@ def require_building(data: Any) -> Any:
     object
         The same.
     """
-    if not isinstance(data, Mapping) or "building" not in data or "surfaces" in data:
+    if not isinstance(data, Mapping) or not names_a_building(data):
         return data
     design = "objectives" in data or "variables" in data
     what, command = ("a design study", "design") if design else ("a study", "study")

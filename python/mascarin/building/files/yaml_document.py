@@ -16,8 +16,9 @@ from mascarin._io.memory import uncollected
 from mascarin._io.regular import require_regular
 from mascarin.building.base.error_texts import COLUMN, KeyPath, explained
 from mascarin.building.base.part import Part
-from mascarin.building.files.defaults import DEFAULTS, with_defaults
+from mascarin.building.files.defaults import DEFAULTS, names_a_building, with_defaults
 from mascarin.building.files.inheritance import EXTENDS, Inherited, inherited
+from mascarin.building.files.recognition import recognized
 from mascarin.building.files.yaml_nodes import compose, number_of
 from mascarin.errors import InputError
 
@@ -104,6 +105,9 @@ def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = 
             reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
             raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of {what}") from error
         document = _Document(str(file), blanks=blanks)
+        file_kind = recognized(text, str(file))
+        if file_kind is not None:
+            document.refuse_at_all(file_kind.what, f"a YAML file of {what}", file_kind.remedy)
         return document.read(text), document.lines
 
     document = inherited(path, one, by_path=not blanks, file_keys=file_keys)
@@ -216,9 +220,16 @@ class _Document:
             )
         if not self.faults and not isinstance(plain, Mapping):
             self._refuse(0, "", "no keys", "a mapping with site:, surfaces: and so on", "See the examples.")
-        if self.faults:
+        # Keys without values are right in a study: what is wrong is that it is one, which is said later.
+        other = not self.blanks and isinstance(plain, Mapping) and names_a_building(plain)
+        if self.faults and not other:
             raise InputError("\n".join(text for _, text in sorted(self.faults)))
         return plain
+
+    def refuse_at_all(self, actual: str, expected: str, help_: str) -> NoReturn:
+        """Refuse a file that is no description."""
+        self._refuse(0, "", actual, expected, help_)
+        raise InputError(self.faults[0][1])
 
     def _refuse(self, line: int, path: str, actual: str, expected: str, help_: str) -> None:
         where = f"{self.name}:{line + 1}: {path or 'the whole description'}"

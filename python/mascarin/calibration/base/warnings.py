@@ -21,7 +21,12 @@ _NARROW: Final = 0.05  # part of the range below which an interval is narrow, wh
 
 
 def warnings(
-    problem: CalibrationProblem, z: Floats, uncertainty: Uncertainty, residuals: Floats, jacobian: Floats
+    problem: CalibrationProblem,
+    z: Floats,
+    uncertainty: Uncertainty,
+    residuals: Floats,
+    jacobian: Floats,
+    beside: str = "",
 ) -> list[str]:
     """Describe what limits the use of the estimates.
 
@@ -29,6 +34,8 @@ def warnings(
     ----------
     problem, z, found, residuals, jacobian
         As for `estimate`, and its result.
+    beside : str
+        What was taken off the residuals, in words.
 
     Returns
     -------
@@ -54,7 +61,7 @@ def warnings(
             f"{len(names)} parameters were estimated from residuals worth only {total:.0f} independent "
             f"samples: estimate fewer, or compare a longer period"
         )
-    texts += _biased(problem, residuals, uncertainty)
+    texts += _biased(problem, residuals, uncertainty, beside)
     return texts
 
 
@@ -85,7 +92,8 @@ def on_bounds(
         if not (low or high):
             continue
         side, bound = ("lower", p.lower) if low else ("upper", p.upper)
-        where = f"on its {side} bound {bound:g} {p.unit}".rstrip()
+        unit = "" if p.unit == "-" else p.unit
+        where = f"on its {side} bound {bound:g} {unit}".rstrip()
         outward = slope[i] > 0.0 if low else slope[i] < 0.0
         if uncertainty.high[i] - uncertainty.low[i] > _UNDETERMINED:
             reason = "the data do not determine it, and the search ended there"
@@ -96,7 +104,7 @@ def on_bounds(
                 f"parameter compensates for an error of the model"
             )
         else:
-            reason = "the minimum lies there within its uncertainty"
+            reason = "within the uncertainty, the data fit best at this end of the range"
         reasons[p.path] = f"{where}: {reason}"
     return reasons
 
@@ -125,7 +133,9 @@ def _correlated(
     return texts
 
 
-def _biased(problem: CalibrationProblem, residuals: Floats, uncertainty: Uncertainty) -> list[str]:
+def _biased(
+    problem: CalibrationProblem, residuals: Floats, uncertainty: Uncertainty, beside: str
+) -> list[str]:
     """Sensors whose residuals have a mean that their scatter does not explain."""
     texts = []
     for s, sensor in enumerate(problem.sensors):
@@ -137,7 +147,7 @@ def _biased(problem: CalibrationProblem, residuals: Floats, uncertainty: Uncerta
         ):
             unit = sensor.unit.replace("degC", "K")
             texts.append(
-                f"'{sensor.name}' has a bias of {bias:+.2g} {unit} at the estimates; the intervals do not "
-                "cover its cause"
+                f"'{sensor.name}' has a bias of {bias:+.2g} {unit} at the estimates{beside}; the intervals "
+                "do not cover its cause"
             )
     return texts

@@ -48,6 +48,8 @@ SAMPLED: Final = (
 )
 """What sampling changes, for reports."""
 
+#: What the residuals of its warnings are without.
+_BESIDE: Final = ", beside the estimated errors of sensors and model"
 _MAX_STEPS: Final = 8
 _MAX_HALVINGS: Final = 3
 #: With which an estimate is said to lie beyond the end of its range. [-]
@@ -222,7 +224,7 @@ def _reported(
     remaining = np.where(problem.mask, residuals + expected, 0.0)
     chains, said = (
         distribution.chains,
-        tuple(warnings(problem, z, uncertainty, remaining, linearization.jacobian)),
+        tuple(warnings(problem, z, uncertainty, remaining, linearization.jacobian, _BESIDE)),
     )
     cost = Cost(problem, fit.cost_name)
     each = cost.of_sensors(residuals[None])

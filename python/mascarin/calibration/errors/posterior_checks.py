@@ -272,7 +272,7 @@ def of_estimates(
         Reasons of estimates on the end of their range, by path.
     """
     contradictions = [
-        Contradiction("bound", path, f"{path} is {reason}: the intervals of all others depend on this end")
+        Contradiction("bound", path, f"{path} is {reason}; the intervals of all others depend on this end")
         for path, reason in on_bound.items()
     ]
     for parameter, value in zip(parameters, values.tolist(), strict=True):

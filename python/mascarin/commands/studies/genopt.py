@@ -62,8 +62,15 @@ def optimize(
     int
         Exit code.
     """
-    from mascarin.errors import InUse, MascarinError
+    from mascarin.building.files.recognition import GENOPT, described
+    from mascarin.errors import InputError, InUse, MascarinError
 
+    file_kind = described(project)
+    if file_kind is not None and file_kind.what != GENOPT:
+        raise InputError(
+            f"{project}: found {file_kind.what}; expected the ini file of a GenOpt project: "
+            f"{file_kind.remedy.removesuffix('.')}"
+        )
     try:
         return _optimize(
             project,

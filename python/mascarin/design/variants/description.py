@@ -210,6 +210,8 @@ class DesignFile(Part):
             for key, what, command in (
                 ("surfaces", "a building", "mascarin run FILE --weather CLIMATE"),
                 ("measurements", "a study", "mascarin study FILE -o FOLDER"),
+                ("sensors", "a study", "mascarin study FILE -o FOLDER"),
+                ("identification", "a study", "mascarin study FILE -o FOLDER"),
             ):
                 if key in data:
                     expected = "a design study: building, climates, variables, objectives"

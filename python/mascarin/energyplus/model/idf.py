@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
+from mascarin.building.files.recognition import described
 from mascarin.energyplus.model.expressions import values_of_first_run, with_values
 from mascarin.energyplus.model.field_checks import AUTO, wrong_number
 from mascarin.errors import InputError, did_you_mean
@@ -274,7 +275,10 @@ def read(path: Path) -> IdfModel:
     """
     form = _SUFFIXES.get(path.suffix.casefold())
     if form is None:
-        raise InputError(f"{path}: found a file '{path.suffix}'; expected .idf or .epJSON of EnergyPlus")
+        file_kind = described(path)
+        actual = f"a file '{path.suffix}'" if file_kind is None else file_kind.what
+        remedy = "" if file_kind is None else f": {file_kind.remedy.removesuffix('.')}"
+        raise InputError(f"{path}: found {actual}; expected .idf or .epJSON of EnergyPlus{remedy}")
     require_regular(path, _EXPECTED)
     if not path.is_file():
         raise InputError(f"{path}: found no such file; expected {_EXPECTED}. Check its folder and name")

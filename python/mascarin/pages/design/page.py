@@ -15,9 +15,10 @@ from mascarin.design.variants.details import REFERENCE, detail, grouped_gains, l
 from mascarin.design.variants.results import ALL
 from mascarin.figures import text
 from mascarin.pages.design import charts
-from mascarin.pages.design.single_variables import single_variables
-from mascarin.pages.design.words import facts, reference_value, verdict
+from mascarin.pages.design.single_variables import single_variables, with_unit_of
+from mascarin.pages.design.words import facts, reference_value, verdict, warnings
 from mascarin.pages.frame.template import environment, frame
+from mascarin.pages.run.page import flow_words
 
 if TYPE_CHECKING:
     from mascarin.design.variants.details import Detail
@@ -66,6 +67,7 @@ def render(results: DesignResults) -> str:
     sections = [
         {"id": key, "title": title, "content": content}
         for key, title, content in (
+            ("warnings", "Warnings", warnings(results)),
             ("ranking", "Ranking", _rankings(results)),
             ("climates", "What it brings in each climate", _climates(results)),
             ("single", "One variable at a time", single_variables(results, reference)),
@@ -266,7 +268,7 @@ def _pair(choices: Sequence[Choice]) -> tuple[int, int] | None:
 def _axis(choice: Choice) -> str:
     if choice.structural and choice.unit == "degC":
         return f"{choice.name}, by melting temperature in °C"
-    return f"{choice.name}, {units.shown(choice.unit)}" if choice.unit else choice.name
+    return with_unit_of(choice)
 
 
 def _column(label: str, value: float | None, choice: Choice) -> str:
@@ -371,7 +373,7 @@ def _why(results: DesignResults, details: dict[str, list[Detail]]) -> list[dict[
                 )
         flows = [name for name in runs[0].flows if any(abs(run.flows[name]) > 3.6e3 for run in runs)]
         table = [
-            {"name": name, "values": [text.significant(run.flows[name] / 3.6e6) for run in runs]}
+            {"name": flow_words(name), "values": [text.significant(run.flows[name] / 3.6e6) for run in runs]}
             for name in flows
         ]
         sections.append(

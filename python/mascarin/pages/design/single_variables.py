@@ -78,7 +78,7 @@ def _table(results: DesignResults, position: int, choice: Choice, reference: flo
     labels = [row["label"] for row in rows]
     numbers = np.array([values[number] for _, number in sorted(same)], dtype=np.float64)
     unit = units.shown(objective.unit)
-    title = f"{choice.name}, {units.shown(choice.unit)}" if _numeric(choice) else choice.name
+    title = with_unit_of(choice) if _numeric(choice) else choice.name
     name = results.ranked_by
     axis = f"{name}, {unit}" if unit else name
     return {
@@ -86,6 +86,12 @@ def _table(results: DesignResults, position: int, choice: Choice, reference: flo
         "rows": rows,
         "drawing": charts.beside_reference(numbers, labels, reference, axis, f"{name} by {title}"),
     }
+
+
+def with_unit_of(choice: Choice) -> str:
+    """Name of a variable with the unit of its numbers; a share or a factor has none."""
+    unit = units.shown(choice.unit) if choice.unit else ""
+    return f"{choice.name}, {unit}" if unit else choice.name
 
 
 def _numeric(choice: Choice) -> bool:

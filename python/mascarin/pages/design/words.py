@@ -81,8 +81,32 @@ def verdict(results: DesignResults) -> list[str]:
     firsts = {results.best[ranked.order[0]] for climate, ranked in results.rankings.items() if climate != ALL}
     if len(firsts) > 1:
         said.append("No single design is first in all climates; the table below gives the first of each.")
-    said += [f"Warning: {line}." for line in results.warnings]
+    count = len(warnings(results))
+    if count:
+        said.append(f"{'One warning' if count == 1 else f'{count} warnings'} about the runs: see below.")
     return said
+
+
+def warnings(results: DesignResults) -> list[str]:
+    """Warnings about the runs; one that holds in several climates is said once.
+
+    Parameters
+    ----------
+    results : DesignResults
+        The results.
+    """
+    climates: dict[str, list[str]] = {}
+    for line in results.warnings:
+        climate, _, words = line.partition(": ")
+        of_climate = climate in {site.name for site in results.inputs.sites}
+        climates.setdefault(words if of_climate else line, []).extend([climate] if of_climate else [])
+    climate_count = len(results.inputs.sites)
+    return [
+        f"{'all climates' if len(names) == climate_count > 1 else ', '.join(names)}: {words}"
+        if names
+        else words
+        for words, names in ((words, list(dict.fromkeys(names))) for words, names in climates.items())
+    ]
 
 
 def _mean_of(results: DesignResults) -> str:

@@ -277,7 +277,7 @@
     const refuse = (words) => { message.textContent = words; message.hidden = !words; exact.toggleAttribute("aria-invalid", Boolean(words)); };
     const inside = (v) => Number.isFinite(v) && (lower === null || v >= lower) && (upper === null || v <= upper);
     function set(v) {
-      if (!inside(v)) { refuse(`Found ${v} ${slider.unit}; expected ${slider.allowed}. The last value is used.`); return; }
+      if (!inside(v)) { refuse(`Found ${`${v} ${slider.unit}`.trim()}; expected ${slider.allowed}. The last value is used.`); return; }
       refuse("");
       if (v === slider.value) delete values[slider.path]; else values[slider.path] = v;
       want();
@@ -320,7 +320,7 @@
   const stem = data.base.replace(/^.*[\\/]/, "").replace(/\.[^.]*$/, "");
   $("save").addEventListener("click", () => {
     const entries = Object.entries({ ...data.settings, ...values }).map(([path, value]) => `  ${JSON.stringify(path)}: ${value}\n`).join("");
-    download(`${stem}-changed.yaml`, "text/yaml", `# ${data.title.replace(/\s+/g, " ")} with other values, by a page of Mascarin ${data.version}.\nextends: ${JSON.stringify(data.base)}\nset:${entries ? `\n${entries}` : " {}\n"}`);
+    download(`${stem}-changed.yaml`, "text/yaml", `# ${data.title.replace(/\s+/g, " ")} with other values, by a page of Mascarin ${data.version}.\n# Put this file beside ${data.base.replace(/\s+/g, " ")}. The page: ${data.period}.\nextends: ${JSON.stringify(data.base)}\nset:${entries ? `\n${entries}` : " {}\n"}`);
   });
   $("csv").addEventListener("click", () => {
     const quoted = (words) => (/[",\n]/.test(words) ? `"${words.replaceAll('"', '""')}"` : words);

@@ -243,6 +243,8 @@ class _Page:
             "sliders": self._sliders,
             "rows": len(seconds),
             "step": simulation.step_seconds,
+            "period": f"{simulation.start:%Y-%m-%d %H:%M} to {simulation.end:%Y-%m-%d %H:%M}, steps of "
+            f"{simulation.step_seconds:g} s",
             # Local times, as if they were UTC; the clock jumps at these rows.
             "clock": [[int(row), int(seconds[row])] for row in (0, *jumps.tolist())],
             "stride": max(1, -(-len(seconds) // _MAX_POINTS)),

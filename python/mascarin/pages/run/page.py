@@ -38,7 +38,7 @@ _FIGURES: Final = (
 )
 #: Curves in one figure, and intervals of a curve: more of them are averaged.
 _CURVES, _POINTS = 8, 700
-#: Kinds that every zone has, of which rooms are shown apart from cavities.
+#: Kinds that every zone has, of which rooms are shown apart from cavities and attics.
 _OF_ZONES: Final = ("air_temperature", "operative_temperature", "relative_humidity")
 _KINDS_OF_LOADS: Final = ("heating_load", "cooling_load")
 _FLOWS: Final = {
@@ -71,13 +71,16 @@ class Notes(NamedTuple):
     inputs : sequence of (str, str)
         Files and options, by name.
     rooms : sequence of str
-        Zones that are no cavities; empty: all.
+        Zones that are shown first; empty: all.
+    other_zones : str
+        What the other zones are, such as 'cavities'.
     """
 
     outdoors: Array | None = None
     warnings: Sequence[str] = ()
     inputs: Sequence[tuple[str, str]] = ()
     rooms: Sequence[str] = ()
+    other_zones: str = "cavities"
 
     def in_room(self, output: str) -> bool:
         """Whether an output is that of a room."""
@@ -195,7 +198,7 @@ def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
     for kind in dict.fromkeys((*_FIGURES, *requested_kinds)):  # those that were asked for follow
         outputs = [(k, output) for k, output in enumerate(results.outputs) if output.kind == kind]
         of_rooms = [(k, output) for k, output in outputs if notes.in_room(output.name)]
-        for title, part in _apart(kind, outputs, of_rooms):
+        for title, part in _apart(kind, outputs, of_rooms, notes.other_zones):
             curves = [
                 (output.name.rpartition(".")[0], results.records[:, k], output.mean) for k, output in part
             ]
@@ -210,14 +213,14 @@ def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
 
 
 def _apart(
-    kind: str, outputs: list[_Numbered], of_rooms: list[_Numbered]
+    kind: str, outputs: list[_Numbered], of_rooms: list[_Numbered], other_zones: str
 ) -> list[tuple[str, list[_Numbered]]]:
-    """Air temperatures of rooms apart from those of cavities; all else together."""
+    """Air temperatures of rooms apart from those of other zones; all else together."""
     title = KINDS[kind].label
     if kind not in _OF_ZONES or len(of_rooms) in (0, len(outputs)):
         return [(title, outputs)]
-    of_cavities = [entry for entry in outputs if entry not in of_rooms]
-    return [(title, of_rooms), (f"{title} of cavities", of_cavities)]
+    beside = [entry for entry in outputs if entry not in of_rooms]
+    return [(title, of_rooms), (f"{title} of {other_zones}", beside)]
 
 
 def _figure(
@@ -312,10 +315,10 @@ def _energy(results: Results) -> dict[str, Any]:
     into = {flow_words(flow): value / 1e6 for flow, value in results.energy.into.items() if value}
     heats = [*into.items(), ("Stored in walls and air", results.energy.stored / 1e6)]
     rows = [(label, text.significant(heat / 3.6, 4)) for label, heat in heats]
+    ledger = LedgerEntry(terms=[LedgerTerm(label=label, value=heat) for label, heat in heats])
     return {
-        "drawing": ledger_bars(
-            LedgerEntry(terms=[LedgerTerm(label=label, value=heat) for label, heat in heats])
-        ),
+        "drawing": ledger_bars(ledger),
+        "narrow": ledger_bars(ledger, narrow=True),
         "rows": rows,
         "closure": text.significant(results.energy.relative_residual, 2),
         "closes": results.energy.closes,
@@ -343,15 +346,9 @@ def how_it_was_run(results: Results, notes: Notes) -> list[tuple[str, str]]:
     """
     provenance = results.provenance
     rows = [*notes.inputs, ("Mascarin", provenance.version), ("Building, SHA-256", provenance.building_hash)]
+    rows += [_row("Weather", key, value) for key, value in provenance.climate.items() if value]
     rows += [
-        (f"Weather, {key.replace('_', ' ')}", _words(value))
-        for key, value in provenance.climate.items()
-        if value
-    ]
-    rows += [
-        (f"Measurements, {key.replace('_', ' ')}", _words(value))
-        for key, value in (provenance.measurements or {}).items()
-        if value
+        _row("Measurements", key, value) for key, value in (provenance.measurements or {}).items() if value
     ]
     rows += [
         ("Period", f"{results.index[0]:%Y-%m-%d %H:%M} to {results.index[-1]:%Y-%m-%d %H:%M}"),
@@ -366,9 +363,17 @@ def how_it_was_run(results: Results, notes: Notes) -> list[tuple[str, str]]:
     return rows
 
 
+def _row(of: str, key: str, value: Any) -> tuple[str, str]:
+    """Name and words of what is known of a file."""
+    if key == "step_seconds":
+        return f"{of}, step", text.with_unit(float(value), "s", 6)
+    return f"{of}, {key.replace('_', ' ').replace('sha256', 'SHA-256')}", _words(value)
+
+
 def _words(value: Any) -> str:
     if isinstance(value, Mapping):
-        return "; ".join(f"{key}: {_words(part)}" for key, part in value.items())
+        return "; ".join(f"{key}: {_words(part)}" for key, part in value.items() if part != "")
     if isinstance(value, list | tuple):
-        return ", ".join(_words(part) for part in value)
+        parts = [_words(part) for part in value]
+        return (" " if all(part.endswith(".") for part in parts) else ", ").join(parts)
     return str(value)

@@ -21,7 +21,7 @@ from mascarin.pages.study.data.labels import (
     short_periods,
     unit_of,
 )
-from mascarin.pages.study.data.main_results import coverage, judged_criteria, scatter
+from mascarin.pages.study.data.main_results import coverage, judged_criteria, mean_errors, scatter
 from mascarin.pages.study.data.series import Series
 from mascarin.pages.study.figures.comparison_data import model_looks
 from mascarin.pages.study.sections import (
@@ -193,14 +193,15 @@ def _errors(study: StudyDocument) -> list[dict[str, str]]:
     if scattered is None:
         return []
     period, by_unit = scattered
-    return [
-        _fact(
-            f"Error of the {model_label(study, main_model(study))} model",
-            f"{text.span(values)}\u00a0{unit}".strip(),
-            f"standard deviation, {period_label(study, period).lower()}",
-        )
-        for unit, values in by_unit.items()
-    ]
+    means = mean_errors(study, period)
+    facts = []
+    for unit, values in by_unit.items():
+        note = f"standard deviation, {period_label(study, period).lower()}"
+        if unit in means:
+            note += f"; mean {text.span(means[unit]).replace('–', ' to ')}\u00a0{unit}".rstrip()
+        span = f"{text.span(values)}\u00a0{unit}".strip()
+        facts.append(_fact(f"Error of the {model_label(study, main_model(study))} model", span, note))
+    return facts
 
 
 def _sections(study: StudyDocument, series: Series) -> list[dict[str, Any]]:

@@ -352,7 +352,7 @@
       away = Math.max(away, c.dot(to) + room * Math.max(Math.abs(c.dot(up)) / high, Math.abs(c.dot(right)) / wide));
     };
     for (const { points } of parts) for (const p of points) include(p, 1.18);
-    if ($("show-sun").checked) for (const p of inSky) include(p, 1.06);
+    if ($("show-sun").checked) for (const p of [...inSky, ...circle]) include(p, 1.06);
     controls.target.copy(centre);
     camera.position.copy(centre).addScaledVector(to, away);
     camera.near = size / 50;

@@ -45,7 +45,7 @@ TABLE: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "end": (
         "str, datetime or pandas.Timestamp, optional",
-        "End of the period, as `start`. Default: end of the climate.",
+        "End of the period, as `start`. Default: the last whole step of the climate.",
     ),
     "step": ("str or float", "Time step, such as ``15min``, or a number of seconds. [s]"),
     "scheme": (

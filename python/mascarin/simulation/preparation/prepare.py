@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
@@ -169,8 +170,13 @@ def period(
     return first, last
 
 
-def span(climate: Climate, start: TimeLike | None, end: TimeLike | None) -> tuple[float, float]:
-    """Start and end, by default those of the climate, in seconds since 1970-01-01 UTC. [s]"""
+def span(
+    climate: Climate, start: TimeLike | None, end: TimeLike | None, step: float = 0.0
+) -> tuple[float, float]:
+    """Start and end, by default those of the climate, in seconds since 1970-01-01 UTC. [s]
+
+    An end that is not stated is that of the last whole step of so many seconds.
+    """
     grid = climate.grid
     # A date without a year is the first one in the climate, and after the start.
     first, last = grid.start, grid.end
@@ -188,6 +194,8 @@ def span(climate: Climate, start: TimeLike | None, end: TimeLike | None) -> tupl
                 f"{opening} .. {closing}. Choose one there, or another weather file"
             )
         raise InputError(f"period: found start {begin} and end {finish}, expected the end after the start")
+    if end is None and 0.0 < step <= last - first:
+        last = first + step * math.floor((last - first) / step + 1e-9)
     return first, last
 
 

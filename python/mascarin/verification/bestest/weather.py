@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from mascarin.errors import InputError
+from mascarin.weather.reading.data import data_file
 
 if TYPE_CHECKING:
     from mascarin.weather import Climate
 
 FINGERPRINT: Final = "33dade78c566d0930e6b9e92b76bdb279853a01277d0d326ee77ab6df47fcf8a"
 """SHA-256 of the numbers of 8760 hours. Files that differ only in their header have the same one."""
+NAME: Final = "725650TYCST.epw"
 WHERE: Final = (
     "It is 725650TYCST.epw: Denver International Airport, TMY3, station 725650. It comes with the standard's "
     "accompanying files and with NREL's BESTEST-GSR (github.com/NREL/BESTEST-GSR)"
@@ -28,7 +30,7 @@ def read(file: Path | None) -> Climate:
     Parameters
     ----------
     file : Path or None
-        The EPW file.
+        The EPW file; None: that of the data folder or the cache, else it is downloaded.
 
     Returns
     -------
@@ -37,12 +39,17 @@ def read(file: Path | None) -> Climate:
     Raises
     ------
     InputError
-        No file was given, it cannot be read, or it has other weather.
+        It cannot be read or downloaded, or it has other weather.
     """
     from mascarin.weather import Climate
 
     if file is None:
-        raise InputError(f"--weather: not given; expected the standard's weather file. {WHERE}.")
+        try:
+            file = data_file(NAME)
+        except InputError as error:
+            raise InputError(
+                f"--weather: not given; expected the standard's weather file. {WHERE}. {error}"
+            ) from None
     if not file.is_file():
         raise InputError(f"--weather: found no file '{file}'; expected the standard's weather file. {WHERE}.")
     climate = Climate.from_epw(file, typical=True)

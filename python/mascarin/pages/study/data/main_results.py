@@ -91,3 +91,22 @@ def scatter(study: StudyDocument) -> tuple[str, dict[str, list[float]]] | None:
         if by_unit:
             return period, by_unit
     return None
+
+
+def mean_errors(study: StudyDocument, period: str) -> dict[str, list[float]]:
+    """Means of the error of the sensors in a period, by unit.
+
+    Parameters
+    ----------
+    study : StudyDocument
+        The results.
+    period : str
+        Key of the period.
+    """
+    model = main_model(study)
+    by_unit: dict[str, list[float]] = {}
+    for sensor in study.sensors:
+        bias = study.metrics(sensor, period, model).bias
+        if bias is not None:
+            by_unit.setdefault(units.difference(unit_of(study, sensor)), []).append(float(bias))
+    return by_unit

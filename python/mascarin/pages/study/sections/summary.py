@@ -17,7 +17,7 @@ from mascarin.pages.study.data.labels import (
     parameter_label,
     period_label,
 )
-from mascarin.pages.study.data.main_results import coverage, judged_criteria, scatter
+from mascarin.pages.study.data.main_results import coverage, judged_criteria, mean_errors, scatter
 from mascarin.pages.study.data.series import Series
 from mascarin.pages.study.sections import curves
 from mascarin.pages.study.sections.energy import ledger_bars
@@ -28,6 +28,8 @@ from mascarin.study_document.estimates import ParameterEntry
 TITLE = "Summary"
 #: Parameters that are listed here; the appendix has all.
 _LISTED: Final = 10
+#: Parameters that one step names.
+_NAMED: Final = 4
 #: Steps that are named at most.
 _STEPS: Final = 5
 #: Width of the figure of sensitivity, its axis, and its longest bar. [px]
@@ -87,16 +89,27 @@ def _criteria_words(study: StudyDocument) -> str:
 
 
 def _scatter_words(study: StudyDocument) -> str:
-    """The standard deviation of the error in the last judged period."""
+    """Mean and standard deviation of the error in the last judged period, and what that period is."""
     scattered = scatter(study)
     if scattered is None:
         return ""
     period, by_unit = scattered
-    words = " and ".join(
-        f"{text.span(values)}\u00a0{unit}".strip("\u00a0") for unit, values in by_unit.items()
-    )
+    words = f"a standard deviation of {_by_unit(by_unit)}"
+    means = mean_errors(study, period)
+    if means:
+        words = f"a mean of {_by_unit(means)} and {words}"
     varying = ", depending on the sensor" if any(len(values) > 1 for values in by_unit.values()) else ""
-    return f"; its error has a standard deviation of {words}{varying} ({period_label(study, period).lower()})"
+    note = study.periods[period].note if period in study.periods else ""
+    where = f"{period_label(study, period).lower()}{': ' if note else ''}{note}"
+    return f"; its error has {words}{varying} ({where})"
+
+
+def _by_unit(by_unit: dict[str, list[float]]) -> str:
+    """Spans of numbers with their units: 0.04 to 0.08 K and 12 W."""
+    return " and ".join(
+        f"{text.span(values).replace('–', ' to ')}\u00a0{unit}".strip("\u00a0")
+        for unit, values in by_unit.items()
+    )
 
 
 def _trust_words(study: StudyDocument) -> str:
@@ -183,11 +196,15 @@ def _bounds(study: StudyDocument) -> list[str]:
     names = [parameter_label(study, path) for path, entry in study.parameters.items() if entry.at_bound]
     if not names:
         return []
-    further = f" and {len(names) - 1} more" if len(names) > 1 else ""
-    verb = "are" if further else "is"
+    if len(names) == 1:
+        return [
+            f"{names[0]} is at the end of the stated range: measure it, state a wider range with its source, "
+            "or look for a cause outside of the parameters."
+        ]
+    shown = [*names[:_NAMED], *([f"{len(names) - _NAMED} more"] if len(names) > _NAMED else [])]
     return [
-        f"{names[0]}{further} {verb} at the end of the stated range: measure it, state a wider range with "
-        "its source, or look for a cause outside of the parameters."
+        f"{', '.join(shown[:-1])} and {shown[-1]} are at the ends of their stated ranges: measure them, "
+        "state wider ranges with their sources, or look for a cause outside of the parameters."
     ]
 
 
