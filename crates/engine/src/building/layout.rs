@@ -2,7 +2,9 @@
 
 use super::glazing::GlassPlan;
 use super::ids::SideId;
-use crate::input::description::{Construction, Description, HeatSource, Material, Zone, ZoneLongwave};
+use crate::input::description::{
+    Construction, Description, HeatSource, HeatingMeans, Material, Zone, ZoneLongwave,
+};
 
 /// A wall as a chain of cells between two surfaces.
 #[derive(Debug, Clone)]
@@ -15,7 +17,7 @@ pub struct SurfacePlan {
     pub link_layers: Vec<Vec<usize>>,
     /// First and one past the last cell of each layer.
     pub layer_cells: Vec<(usize, usize)>,
-    /// True when its properties depend on temperature, its panes absorb sun, or heat sources are in it.
+    /// True when its properties depend on temperature, its panes absorb sun, or water flows in it.
     pub nonlinear: bool,
     /// Heat sources in it, and the cell that is the plane of each: of no thickness, between two layers.
     pub planes: Vec<(usize, usize)>,
@@ -124,13 +126,16 @@ impl SurfacePlan {
                 link_layers.push(Vec::new());
             }
         }
+        // What water takes and gives changes with its flow; other heat is known when a stage begins.
+        let means = |&(source, _): &(usize, usize)| description.heat_sources.get(source);
+        let water = |source: &HeatSource| matches!(source.means, HeatingMeans::Water { .. });
+        nonlinear |= planes.iter().filter_map(means).any(water);
         Self {
             first_cell,
             cell_layers,
             link_layers,
             layer_cells,
-            // What water takes and gives changes with its flow.
-            nonlinear: nonlinear || !planes.is_empty(),
+            nonlinear,
             planes,
             soil,
             glass: None,

@@ -10,6 +10,7 @@ use crate::number::real::{ByPrecision, Mask, Real};
 use crate::run::action::Action;
 use crate::run::options::Options;
 use crate::run::periodic_start::PeriodicStart;
+use crate::run::soil_start::SoilStart;
 use crate::step::control::RunControl;
 use crate::step::history::History;
 use crate::step::state::State;
@@ -99,7 +100,8 @@ pub(super) fn warm_up<'a, S: Real>(
 ) -> Result<(usize, S), EngineError> {
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
     let tolerance = warmup.tolerance.max(LEAST.of::<S>());
-    let soil = slow_soil(stepper.model.plan, warmup.steps as f64 * options.dt);
+    let period = warmup.steps as f64 * options.dt;
+    let (soil, soil_start) = (slow_soil(stepper.model.plan, period), SoilStart::new(&stepper.model, period));
     let mut progress = Progress::new(state, tolerance);
     let mut known: Option<PeriodicStart<S>> = None;
     // What the guesses of the lanes that have converged are made from, as their last repetition left it.
@@ -128,11 +130,13 @@ pub(super) fn warm_up<'a, S: Real>(
             restore(stepper, history.as_ref());
             return Ok((cycle, progress.change_left));
         }
+        let advanced = soil_start.advance(state, &next);
+        let end = advanced.as_ref().unwrap_or(&next);
         let start = if let Some(known) = &mut known {
-            known.next(&stepper.model, state, &next, change, tolerance)
+            known.next(&stepper.model, state, end, change, tolerance)
         } else {
-            known = Some(PeriodicStart::new(&stepper.model, state, &next));
-            next.clone()
+            known = Some(PeriodicStart::new(&stepper.model, state, end));
+            end.clone()
         };
         state.take(reached, &next);
         state.take(progress.active, &start);
