@@ -182,14 +182,12 @@ def test_uniform_temperature_stays() -> None:
 
 def test_the_start_of_weather_that_does_not_change() -> None:
     """Repeated days end, after a few, in the steady state: years of slow soil are not waited for."""
-    house, weather = building(before={"mean": 4.0}, deep_temperature=None), climate(np.full(48, 4.0))
-    house = house.replace({"zones.room.gains": {"lights": {"power": 300.0, "radiative": 0.0}}})
+    house, weather = building(before={"mean": 4.0}), climate(np.full(48, 4.0))
     result = mc.simulate(house, weather, step="1h", outputs=["room.air_temperature"])
     steady = mc.steady(house, weather, outputs=["room.air_temperature"], step="1h")
     air = result.to_dataframe()["room.air_temperature"].to_numpy()
-    assert steady["room.air_temperature"] > 5.0
-    # A day ends within 0.01 K of where it began, in the soil with what is left to change in 200 days.
-    assert np.abs(air - steady["room.air_temperature"]).max() < 0.05
+    assert steady["room.air_temperature"] > 4.5
+    assert np.abs(air - steady["room.air_temperature"]).max() < 0.002
     repetitions = re.search(r"repeated (\d+) times", result.provenance.start)
     assert repetitions is not None
     assert int(repetitions[1]) < 15
