@@ -80,6 +80,12 @@ pub(crate) fn soil_source(description: &Description, surface: usize) -> usize {
     description.heat_sources.len() + 2 * before
 }
 
+/// Whether water flows in some planes: what it takes and gives changes with its flow. Other heat is known when a stage begins.
+fn has_water(description: &Description, planes: &[(usize, usize)]) -> bool {
+    let sources = planes.iter().filter_map(|&(source, _)| description.heat_sources.get(source));
+    sources.into_iter().any(|source| matches!(source.means, HeatingMeans::Water { .. }))
+}
+
 impl SurfacePlan {
     /// Lays out a construction in cells; `first_cell` is its place in the flat cell arrays.
     pub(crate) fn new(
@@ -126,16 +132,12 @@ impl SurfacePlan {
                 link_layers.push(Vec::new());
             }
         }
-        // What water takes and gives changes with its flow; other heat is known when a stage begins.
-        let means = |&(source, _): &(usize, usize)| description.heat_sources.get(source);
-        let water = |source: &HeatSource| matches!(source.means, HeatingMeans::Water { .. });
-        nonlinear |= planes.iter().filter_map(means).any(water);
         Self {
             first_cell,
             cell_layers,
             link_layers,
             layer_cells,
-            nonlinear,
+            nonlinear: nonlinear || has_water(description, &planes),
             planes,
             soil,
             glass: None,

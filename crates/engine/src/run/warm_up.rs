@@ -4,6 +4,7 @@
 //! it with them, to no effect.
 
 use crate::balance::energy_balance::EnergyBalance;
+use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::{ByPrecision, Mask, Real};
@@ -132,12 +133,7 @@ pub(super) fn warm_up<'a, S: Real>(
         }
         let advanced = soil_start.advance(state, &next);
         let end = advanced.as_ref().unwrap_or(&next);
-        let start = if let Some(known) = &mut known {
-            known.next(&stepper.model, state, end, change, tolerance)
-        } else {
-            known = Some(PeriodicStart::new(&stepper.model, state, end));
-            end.clone()
-        };
+        let start = next_start(&mut known, &stepper.model, (state, end), change, tolerance);
         state.take(reached, &next);
         state.take(progress.active, &start);
         stepper.guess.move_by(&next, state);
@@ -152,6 +148,21 @@ pub(super) fn warm_up<'a, S: Real>(
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
     Err(EngineError::WarmUpNotConverged { cycles, residual, tolerance })
+}
+
+/// What the next repetition starts from, after one from a start to an end whose largest change was `change` [K].
+fn next_start<S: Real>(
+    known: &mut Option<PeriodicStart<S>>,
+    model: &Model<'_, S>,
+    (start, end): (&State<S>, &State<S>),
+    change: S,
+    tolerance: f64,
+) -> State<S> {
+    if let Some(known) = known {
+        return known.next(model, start, end, change, tolerance);
+    }
+    *known = Some(PeriodicStart::new(model, start, end));
+    end.clone()
 }
 
 /// The largest change between two repetitions [K]; that of slow cells of soil as what is left to change.
