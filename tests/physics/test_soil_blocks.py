@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -16,6 +17,7 @@ from mascarin.building.soil.courses import soil_of
 from mascarin.building.soil.finite_volumes import FiniteVolumes, SoilGeometry
 from mascarin.building.soil.ladder import SoilLadder, ladder_of
 from mascarin.errors import InputError
+from mascarin.weather import CHANNELS
 
 K, C = 1.9, 1490.0 * 1800.0
 YEAR = 365.0 * 86400.0
@@ -178,6 +180,19 @@ def test_uniform_temperature_stays() -> None:
     assert result.to_dataframe().abs().max().item() < 1e-4
 
 
+def test_the_start_of_weather_that_does_not_change() -> None:
+    """Repeated days end, after a few, in the steady state: years of slow soil are not waited for."""
+    house, weather = building(before={"mean": 4.0}), climate(np.full(48, 4.0))
+    result = mc.simulate(house, weather, step="1h", outputs=["room.air_temperature"])
+    steady = mc.steady(house, weather, outputs=["room.air_temperature"], step="1h")
+    air = result.to_dataframe()["room.air_temperature"].to_numpy()
+    assert steady["room.air_temperature"] > 4.5
+    assert np.abs(air - steady["room.air_temperature"]).max() < 0.002
+    repetitions = re.search(r"repeated (\d+) times", result.provenance.start)
+    assert repetitions is not None
+    assert int(repetitions[1]) < 15
+
+
 def test_the_outdoor_year() -> None:
     """Amplitude and delay of the heat by a yearly swing outdoors are those of the finite volumes."""
     from scipy.sparse import diags
@@ -263,6 +278,31 @@ def test_members_are_runs() -> None:
     for value, member in zip(values, np.asarray(air).reshape(-1, air.sizes["time"]), strict=True):
         alone = mc.simulate(house, weather, parameters={path: float(value)}, **options)
         assert member[-1] == pytest.approx(alone.to_dataframe().to_numpy()[-1, 0], abs=1e-9)
+
+
+def test_the_linear_model_marches_as_a_run() -> None:
+    """Both from 15 degC: matrices with the heat of the outdoor air as inputs, and a run."""
+    from scipy.signal import cont2discrete
+
+    house = building()
+    weather = climate(10.0 + 5.0 * np.sin(2 * np.pi * np.arange(97) / 24.0))
+    run = mc.Simulation(house, weather, step="15min", outputs=["room.air_temperature"], initial=15.0)
+    air = run.run().to_dataframe()["room.air_temperature"].to_numpy()
+    model = mc.state_space(house)
+    channels = [*CHANNELS, *house.to_engine(900.0, {}).channels]
+    names = {"outdoor_air_temperature": "air_temperature"}
+    inputs = run.compiled.forcing[:, :, [channels.index(names.get(name, name)) for name in model.inputs]]
+    assert {"schedule soil below cell 1", "schedule soil below cell 2"} <= set(model.inputs)
+    assert {"floor.soil_1_temperature", "floor.soil_2_temperature"} < set(model.states)
+    # Means of the inputs over each step, as the scheme weighs its stages.
+    first = np.sqrt(0.5)
+    means = first * inputs[:, 0] + (1.0 - first) * inputs[:, 1]
+    matrix, drive, *_ = cont2discrete((model.a, model.b, model.c, model.d), 900.0)
+    state, marched = np.full(len(model.states), 15.0), []
+    for mean in means:
+        state = matrix @ state + drive @ mean
+        marched.append(state[-1])
+    assert np.abs(np.array(marched) - air[-len(marched) :])[24:].max() < 0.01
 
 
 @pytest.mark.parametrize(

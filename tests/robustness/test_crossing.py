@@ -45,7 +45,6 @@ FORBIDDEN: Final[dict[tuple[str, str], str]] = {
         "linear model",
     ): "infiltration of zone room, that a density, a schedule or a control changes",
     ("heat sources", "linear model"): "heat source mat is not linear",
-    ("soil", "linear model"): "surface floor on a block of soil",
     ("openings", "linear model"): "opening slit is not linear",
     ("blinds", "linear model"): "window pane is not linear",
     ("loads", "linear model"): "heating or cooling",

@@ -25,9 +25,9 @@ class StateSpace:
     """A linear model in state space: ``dx/dt = A x + B u``, ``y = C x + D u``.
 
     States are temperatures of finite volumes and zone airs [degC]. Inputs are the outdoor air temperature
-    [degC], the emission of the sky [W/m2], irradiances on surfaces [W/m2], measured temperatures [degC], and
-    ``one``, the constant 1, for the constant terms of linearized radiation. Outputs are temperatures of zone
-    airs and surfaces [degC].
+    [degC], the emission of the sky [W/m2], irradiances on surfaces [W/m2], heat by the outdoor air into soil
+    [W/m2], measured temperatures [degC], and ``one``, the constant 1, for the constant terms of linearized
+    radiation. Outputs are temperatures of zone airs and surfaces [degC].
 
     Parameters
     ----------

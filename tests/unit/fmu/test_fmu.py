@@ -8,11 +8,13 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+import yaml
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 
 from fmu_support import HOUR, Unit, heated, instance, simulated, undefined_symbols, winter
 from mascarin import cli
+from mascarin.building import Building
 from mascarin.commands.options.tables import run_inputs
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
@@ -87,6 +89,34 @@ def test_vents_and_their_controls_are_those_of_a_run_to_the_bit(tmp_path: Path) 
     export(simulation, file, inputs=["weather.wind_speed"])
     expected = simulation.run().records
     assert set(expected[:, -1]) == {0.0, 1.0}
+    assert np.array_equal(simulated(file, simulation), expected)
+
+
+def test_a_block_of_soil_is_that_of_a_run_to_the_bit(tmp_path: Path) -> None:
+    """The soil follows the weather that the unit was made with; the wind is an input."""
+    tree = yaml.safe_load(heated(tmp_path).to_yaml())
+    tree["soil_blocks"] = {
+        "below": {
+            "width": 5,
+            "wall_thickness": 0.3,
+            "conductivity": 1.5,
+            "heat_capacity": 2.5e6,
+            "before": {"mean": 6, "amplitude": 8, "coldest_day": 15},
+        }
+    }
+    tree["surfaces"]["floor"] = {
+        "construction": "wall",
+        "area": 20,
+        "tilt": 180,
+        "outside": {"soil": "below"},
+        "inside": {"zone": "room", "convection": 3, "emissivity": 0.9},
+    }
+    names = ["room.air_temperature", "room.heating_load", "floor.inside_temperature"]
+    simulation = Simulation(Building.from_dict(tree), winter(), step="30min", end="2024-01-12", outputs=names)
+    file = tmp_path / "soil.fmu"
+    export(simulation, file, inputs=["weather.wind_speed"])
+    expected = simulation.run().records
+    assert np.ptp(expected[:, 2]) > 0.01
     assert np.array_equal(simulated(file, simulation), expected)
 
 

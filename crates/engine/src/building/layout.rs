@@ -2,7 +2,9 @@
 
 use super::glazing::GlassPlan;
 use super::ids::SideId;
-use crate::input::description::{Construction, Description, HeatSource, Material, Zone, ZoneLongwave};
+use crate::input::description::{
+    Construction, Description, HeatSource, HeatingMeans, Material, Zone, ZoneLongwave,
+};
 
 /// A wall as a chain of cells between two surfaces.
 #[derive(Debug, Clone)]
@@ -15,7 +17,7 @@ pub struct SurfacePlan {
     pub link_layers: Vec<Vec<usize>>,
     /// First and one past the last cell of each layer.
     pub layer_cells: Vec<(usize, usize)>,
-    /// True when its properties depend on temperature, its panes absorb sun, or heat sources are in it.
+    /// True when its properties depend on temperature, its panes absorb sun, or water flows in it.
     pub nonlinear: bool,
     /// Heat sources in it, and the cell that is the plane of each: of no thickness, between two layers.
     pub planes: Vec<(usize, usize)>,
@@ -78,6 +80,12 @@ pub(crate) fn soil_source(description: &Description, surface: usize) -> usize {
     description.heat_sources.len() + 2 * before
 }
 
+/// Whether water flows in some planes: what it takes and gives changes with its flow. Other heat is known when a stage begins.
+fn has_water(description: &Description, planes: &[(usize, usize)]) -> bool {
+    let sources = planes.iter().filter_map(|&(source, _)| description.heat_sources.get(source));
+    sources.into_iter().any(|source| matches!(source.means, HeatingMeans::Water { .. }))
+}
+
 impl SurfacePlan {
     /// Lays out a construction in cells; `first_cell` is its place in the flat cell arrays.
     pub(crate) fn new(
@@ -129,8 +137,7 @@ impl SurfacePlan {
             cell_layers,
             link_layers,
             layer_cells,
-            // What water takes and gives changes with its flow.
-            nonlinear: nonlinear || !planes.is_empty(),
+            nonlinear: nonlinear || has_water(description, &planes),
             planes,
             soil,
             glass: None,

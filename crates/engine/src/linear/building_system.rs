@@ -112,6 +112,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         } else {
             self.transition_matrices.second_sources(&mut self.sources);
         }
+        self.transition_matrices.release(stage, &inputs.conditions.heat_sources, &mut self.sources);
         self.zone_fronts.begin_stage(inputs, &self.sources);
         if !parts.nonlinear_balances {
             self.assemble_linear(inputs, matrix, Some(iterate));

@@ -14,6 +14,8 @@
 //!
 //! `A` has as many rows as columns. Of a wall of more than [`LONGEST`] cells it is not formed: `A x` then takes two solves with the
 //! tridiagonal factors, so that memory and work grow with the number of cells and not with its square.
+//!
+//! Heat `q` that is released in a cell adds `r P R q1 + R q2` with `R` for the stage's cells by that heat ([`heated`]).
 
 use core::ops::Range;
 use std::collections::HashMap;
@@ -23,6 +25,11 @@ use crate::building::plan::Plan;
 use crate::linear::wall::WallSystem;
 use crate::number::real::Real;
 use crate::number::simd::widened;
+use crate::weather::heat_sources::SourceConditions;
+
+use heated::HeatedWall;
+
+mod heated;
 
 /// Rows of a map that are multiplied together: their sums do not depend on each other, so that the processor adds them
 /// at once.
@@ -67,6 +74,8 @@ pub(crate) struct TransitionMatrices<S> {
     from_surfaces: Vec<[Rows<S>; 4]>,
     /// `from_cells` times the cells at the start of the step.
     by_start: Vec<Rows<S>>,
+    /// Walls in which heat is released.
+    heated: Vec<HeatedWall<S>>,
     /// Heat capacity of the cells of the building [J/K].
     capacity: Vec<S>,
     /// `(1 - g)/g` of the scheme's diagonal coefficient.
@@ -207,6 +216,7 @@ impl<S: Real> TransitionMatrices<S> {
             from_cells: Vec::new(),
             from_surfaces: Vec::new(),
             by_start: Vec::new(),
+            heated: Vec::new(),
             capacity: vec![S::zero(); plan.n_cells],
             ratio: (1.0 - diagonal) / diagonal,
             started: false,
@@ -235,7 +245,11 @@ impl<S: Real> TransitionMatrices<S> {
                 transition_matrices.from_surfaces.resize(places[1] + blocks[1], [zero; 4]);
                 places
             };
-            transition_matrices.by_start.resize(transition_matrices.by_start.len() + blocks[0], zero);
+            let start = transition_matrices.by_start.len();
+            transition_matrices.by_start.resize(start + blocks[0], zero);
+            if !of_plan.planes.is_empty() {
+                transition_matrices.heated.push(HeatedWall::new(wall, of_plan, ROWS * start));
+            }
             let nothing = [S::zero(); 2];
             transition_matrices.walls.push(StepMap {
                 wall,
@@ -268,6 +282,9 @@ impl<S: Real> TransitionMatrices<S> {
             let of_cells = &mut self.from_cells[step_map.places[0]..][..step_map.blocks[0] * columns];
             let of_surfaces = &mut self.from_surfaces[step_map.places[1]..][..step_map.blocks[1]];
             step_map.compute(&chains[step_map.wall], self.ratio, of_cells, of_surfaces);
+        }
+        for heated in &mut self.heated {
+            heated.compute(&chains[heated.wall], self.ratio);
         }
         self.started = false;
     }
@@ -335,6 +352,14 @@ impl<S: Real> TransitionMatrices<S> {
         }
     }
 
+    /// Releases heat in a stage, and adds what of it reaches the surfaces [W/m2].
+    #[inline(always)]
+    pub(crate) fn release(&mut self, stage: usize, at: &[SourceConditions<S>], sources: &mut [[S; 2]]) {
+        for heated in &mut self.heated {
+            heated.release(stage, at, &mut sources[heated.wall]);
+        }
+    }
+
     /// Heat into surface e of each wall in the second stage per degree of its surface o in the first [W/(m2 K)].
     pub(crate) fn carried(&self) -> impl Iterator<Item = (usize, [[S; 2]; 2])> + '_ {
         self.walls.iter().map(|step_map| (step_map.wall, step_map.carried))
@@ -343,7 +368,10 @@ impl<S: Real> TransitionMatrices<S> {
     /// Ends a step with the surface temperatures of its last stage: replaces the cells at its start by those at its end, and
     /// returns the heat stored [J].
     #[inline(always)]
-    pub(crate) fn finish(&self, surfaces: &[S], cells: &mut [S]) -> S {
+    pub(crate) fn finish(&mut self, surfaces: &[S], cells: &mut [S]) -> S {
+        for heated in &self.heated {
+            heated.warm(self.by_start.as_flattened_mut());
+        }
         with_wide_instructions::<S, _>(
             #[inline(always)]
             || self.multiply_surfaces(surfaces, cells),

@@ -170,6 +170,18 @@ impl<S: Real> WallSystem<S> {
         self.elimination.back_between_zeros(cells);
     }
 
+    /// How the heat into the surfaces [W/m2] changes with heat that is released in the cells [W/m2]; `known` takes what
+    /// [`Self::temperature_changes`] needs.
+    #[inline(always)]
+    pub(crate) fn heat_changes(&self, heat: &[S], known: &mut [S]) -> [S; 2] {
+        self.elimination.forward::<SameKind, _>(
+            &self.links,
+            known,
+            #[inline(always)]
+            |i, _| heat[i],
+        )
+    }
+
     /// How the heat into the surfaces [W/m2] changes with the enthalpies of the cells [J/m3]; `known` takes what
     /// [`Self::temperature_changes`] needs.
     #[inline(always)]

@@ -20,7 +20,7 @@ pub struct StateSpace {
     /// Name of each state, a temperature [degC].
     pub states: Vec<String>,
 
-    /// Name of each input: temperatures [degC], irradiances and emissions [W/m2], gains [W].
+    /// Name of each input: temperatures [degC], irradiances, emissions and heat fluxes [W/m2], gains [W].
     pub inputs: Vec<String>,
 
     /// Name of each output, a temperature [degC].
@@ -33,6 +33,10 @@ pub(super) fn state_names(plan: &Plan) -> Vec<String> {
     for (wall, described) in plan.walls.iter().zip(&plan.description.surfaces) {
         let layers = &plan.description.constructions[described.construction].layers;
         for (i, &layer) in wall.cell_layers.iter().enumerate() {
+            if i < wall.soil {
+                names.push(format!("{}.soil_{}_temperature", described.name, wall.soil - i));
+                continue;
+            }
             let number = i - wall.layer_cells[layer].0 + 1;
             names.push(format!("{}.{}_{number}_temperature", described.name, layers[layer].name));
         }

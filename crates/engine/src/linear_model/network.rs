@@ -121,6 +121,20 @@ impl<'a> Network<'a> {
         }
     }
 
+    /// Heat by the outdoor air into a cell of soil, a channel for each cell that has some.
+    fn drive_soil(&mut self, cell: usize, area: f64) {
+        let plan = self.plan;
+        for (w, surface) in plan.description.surfaces.iter().enumerate() {
+            let Some(soil) = &surface.soil else { continue };
+            let innermost = plan.walls[w].first_cell + soil.capacities.len() - 1;
+            let heated = soil.heat.iter().enumerate().find(|(next, _)| innermost - next == cell);
+            if let Some((_, &channel)) = heated {
+                let order = (SideId::outside(w).index(), 0);
+                self.drive(Node::Cell(cell), order, &plan.description.channels[channel], area);
+            }
+        }
+    }
+
     /// Gains of a zone into a node: a share of the convective (0) or radiant (1) part of each of them.
     fn drive_by_gains(&mut self, node: Node, zone: usize, part: usize, share: f64) {
         let (plan, coefficients) = (self.plan, self.coefficients);
@@ -286,6 +300,8 @@ impl Sink<f64> for Network<'_> {
                 let name = self.surface_input(surface, "heat_flux");
                 self.drive(node, (surface.index(), 0), &name, size);
             }
+            // The only heat sources of a linear building.
+            (Origin::HeatSource, Node::Cell(cell)) => self.drive_soil(cell, size),
             // A linear building has neither windows nor ideal loads.
             (
                 Origin::Sun { .. }

@@ -36,9 +36,6 @@ pub(super) fn require_linear(
     if let Some(source) = plan.description.heat_sources.first() {
         return refuse(&format!("heat source {}", source.name), "use a heat flux on a side");
     }
-    if let Some(surface) = plan.description.surfaces.iter().find(|surface| surface.soil.is_some()) {
-        return refuse(&format!("surface {} on a block of soil", surface.name), "use a ground temperature");
-    }
     require_linear_surfaces(plan, coefficients)?;
     require_linear_zones(plan, numbers, coefficients)?;
     if let Some(opening) = plan.description.openings.first() {

@@ -13,6 +13,7 @@ pub mod physical_limits;
 pub mod ratings;
 pub mod simulate;
 pub mod simulate_in_blocks;
+mod soil_start;
 pub mod stepwise;
 pub mod validity;
 mod warm_up;

@@ -4,12 +4,14 @@
 //! it with them, to no effect.
 
 use crate::balance::energy_balance::EnergyBalance;
+use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::run::action::Action;
 use crate::run::options::Options;
 use crate::run::periodic_start::PeriodicStart;
+use crate::run::soil_start::SoilStart;
 use crate::step::control::RunControl;
 use crate::step::history::History;
 use crate::step::state::State;
@@ -99,7 +101,8 @@ pub(super) fn warm_up<'a, S: Real>(
 ) -> Result<(usize, S), EngineError> {
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
     let tolerance = warmup.tolerance.max(LEAST.of::<S>());
-    let soil = slow_soil(stepper.model.plan, warmup.steps as f64 * options.dt);
+    let period = warmup.steps as f64 * options.dt;
+    let (soil, soil_start) = (slow_soil(stepper.model.plan, period), SoilStart::new(&stepper.model, period));
     let mut progress = Progress::new(state, tolerance);
     let mut known: Option<PeriodicStart<S>> = None;
     // What the guesses of the lanes that have converged are made from, as their last repetition left it.
@@ -128,12 +131,9 @@ pub(super) fn warm_up<'a, S: Real>(
             restore(stepper, history.as_ref());
             return Ok((cycle, progress.change_left));
         }
-        let start = if let Some(known) = &mut known {
-            known.next(&stepper.model, state, &next, change, tolerance)
-        } else {
-            known = Some(PeriodicStart::new(&stepper.model, state, &next));
-            next.clone()
-        };
+        let advanced = soil_start.advance(state, &next);
+        let end = advanced.as_ref().unwrap_or(&next);
+        let start = next_start(&mut known, &stepper.model, (state, end), change, tolerance);
         state.take(reached, &next);
         state.take(progress.active, &start);
         stepper.guess.move_by(&next, state);
@@ -148,6 +148,21 @@ pub(super) fn warm_up<'a, S: Real>(
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
     Err(EngineError::WarmUpNotConverged { cycles, residual, tolerance })
+}
+
+/// What the next repetition starts from, after one from a start to an end whose largest change was `change` [K].
+fn next_start<S: Real>(
+    known: &mut Option<PeriodicStart<S>>,
+    model: &Model<'_, S>,
+    (start, end): (&State<S>, &State<S>),
+    change: S,
+    tolerance: f64,
+) -> State<S> {
+    if let Some(known) = known {
+        return known.next(model, start, end, change, tolerance);
+    }
+    *known = Some(PeriodicStart::new(model, start, end));
+    end.clone()
 }
 
 /// The largest change between two repetitions [K]; that of slow cells of soil as what is left to change.

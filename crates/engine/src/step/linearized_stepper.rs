@@ -288,6 +288,9 @@ impl<'a, S: Real> TangentStepper<'a, S> {
                 *held = start.lane(0) + (first.lane(0) - start.lane(0)) * place.ratio;
                 *cell = rate * storage.capacity * *held;
             }
+            for &(source, cell) in &self.model.plan.walls[w].planes {
+                own[cell] += self.weather.conditions.heat_sources[source].heat.lane(0);
+            }
             chain.forward(own);
             chain.back(known.surfaces.pair(w), own);
             for (held, &reached) in cooling.iter_mut().zip(&*own) {

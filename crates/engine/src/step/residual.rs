@@ -121,9 +121,14 @@ fn solved_cells<S: Real>(
         let (range, chain) = (model.cells(w), &solver.system.walls[w]);
         let from = start[range.clone()].iter().zip(&first[range.clone()]);
         let from = from.map(|(&a, &b)| a + (b - a).scale(ratio));
-        let held: Vec<S> = from.zip(&chain.storage).map(|(from, cell)| cell.capacity * from).collect();
+        let laws = chain.storage.iter().zip(&chain.rate);
+        let mut heat: Vec<S> =
+            from.zip(laws).map(|(from, (cell, &rate))| cell.capacity * from * rate).collect();
+        for &(source, cell) in &model.plan.walls[w].planes {
+            heat[cell] += stage.conditions.heat_sources[source].heat;
+        }
         let mut known = vec![S::zero(); range.len()];
-        chain.source_changes(&held, &mut known);
+        chain.heat_changes(&heat, &mut known);
         chain.temperature_changes(&known, solver.solution.surfaces.pair(w), &mut cells[range]);
     }
     cells

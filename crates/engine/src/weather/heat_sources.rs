@@ -37,6 +37,12 @@ impl<S: Real> SourceConditions<S> {
         }
     }
 
+    /// Some heat is released [W/m2].
+    #[cfg(test)]
+    pub(crate) fn of_heat(heat: S) -> Self {
+        Self { heat, ..Self::none() }
+    }
+
     /// Linear interpolation or extrapolation of two others; flows do not go below zero.
     pub(crate) fn interpolate(&mut self, first: &Self, second: &Self, fraction: f64) {
         let line = |a: S, b: S| a + (b - a).scale(fraction);

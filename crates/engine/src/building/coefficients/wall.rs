@@ -30,7 +30,7 @@ pub struct WallCoefficients<S> {
     pub pcm: Vec<PcmCoefficients<S>>,
     /// Resistance of each massless layer, zero for the others [m2 K/W].
     pub layer_resistance: Vec<S>,
-    /// Whether heat sources lie between its layers.
+    /// Whether heat sources lie between its layers, one of which is linearised or takes heat with its temperature.
     pub planes: bool,
     /// Optics and gaps of a window.
     pub glass: Option<Glass<S>>,
@@ -94,8 +94,20 @@ impl<S: Real> WallCoefficients<S> {
         }
         let links = wall.link_layers.iter().enumerate();
         let massless = links.map(|(link, layers)| link < wall.soil || !layers.is_empty()).collect();
-        let planes = !wall.planes.is_empty();
+        let planes = wall.nonlinear && !wall.planes.is_empty();
         Self { area, extra, massless, cells, pcm, layer_resistance, planes, glass: None }
+    }
+}
+
+impl<S: Real> WallCoefficients<S> {
+    /// Resistance of its layers of constant properties behind its first cells [m2 K/W].
+    pub(crate) fn resistance_behind(&self, cells: usize) -> S {
+        let massless = self.layer_resistance.iter().fold(S::zero(), |sum, &resistance| sum + resistance);
+        let solid = |cell: &Cell<S>| match cell.matter {
+            Matter::Solid { conductivity, .. } => cell.thickness / conductivity,
+            Matter::Pcm(_) => S::zero(),
+        };
+        self.cells[cells..].iter().fold(massless, |sum, cell| sum + solid(cell))
     }
 }
 

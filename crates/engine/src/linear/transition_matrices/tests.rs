@@ -6,6 +6,7 @@ use super::TransitionMatrices;
 use crate::building::coefficients::Coefficients;
 use crate::building::plan::Plan;
 use crate::linear::wall::WallSystem;
+use crate::weather::heat_sources::SourceConditions;
 
 /// Random numbers from 0 to 1 (multiplicative congruence with the factor of Knuth's MMIX).
 struct Random(u64);
@@ -28,6 +29,8 @@ struct Wall {
     cells: Vec<[f64; 3]>,
     /// Massless resistance in front of each cell, and behind the last [m2 K/W].
     resistances: Vec<f64>,
+    /// Cells of no thickness in which heat is released.
+    heated: Vec<usize>,
 }
 
 impl Wall {
@@ -41,7 +44,19 @@ impl Wall {
             kinds.extend(vec![kind; same.min(cells - kinds.len())]);
         }
         let mut resistance = || (random.between(0.0, 1.0) - 0.7).max(0.0);
-        Self { area, cells: kinds, resistances: (0..=cells).map(|_| resistance()).collect() }
+        let resistances = (0..=cells).map(|_| resistance()).collect();
+        Self { area, cells: kinds, resistances, heated: Vec::new() }
+    }
+
+    /// Heat is released behind some of its cells, and not behind the last.
+    fn heated(mut self, behind: &[usize]) -> Self {
+        for (already, &cell) in behind.iter().enumerate() {
+            let plane = cell + 1 + already;
+            self.cells.insert(plane, [0.0, 1.0, 0.0]);
+            self.resistances.insert(plane, 0.0);
+            self.heated.push(plane);
+        }
+        self
     }
 
     /// Conductances in front of each cell, and behind the last [W/(m2 K)].
@@ -53,13 +68,16 @@ impl Wall {
         (0..=self.cells.len()).map(|link| 1.0 / resistance(link)).collect()
     }
 
-    /// Cells at the end of a backward Euler stage of a length [s] from given ones, between two surfaces.
-    fn stage(&self, length: f64, from: &[f64], surfaces: [f64; 2]) -> Vec<f64> {
+    /// Cells at the end of a backward Euler stage of a length [s] from given ones, between two surfaces; `heat` of each source [W/m2].
+    fn stage(&self, length: f64, from: &[f64], surfaces: [f64; 2], heat: &[f64]) -> Vec<f64> {
         let (n, links) = (self.cells.len(), self.conductances());
         let rates: Vec<f64> = self.cells.iter().map(|[d, _, capacity]| d * capacity / length).collect();
         let mut right: Vec<f64> = from.iter().zip(&rates).map(|(from, rate)| from * rate).collect();
         right[0] += links[0] * surfaces[0];
         right[n - 1] += links[n] * surfaces[1];
+        for (&plane, heat) in self.heated.iter().zip(heat) {
+            right[plane] += heat;
+        }
         // Thomas' algorithm.
         let mut diagonal: Vec<f64> = (0..n).map(|i| rates[i] + links[i] + links[i + 1]).collect();
         for i in 1..n {
@@ -84,6 +102,7 @@ fn plan(walls: &[Wall]) -> Plan {
     };
     let one = number(1.0);
     let (mut materials, mut constructions, mut surfaces) = (Vec::new(), Vec::new(), Vec::new());
+    let mut heat_sources: Vec<Value> = Vec::new();
     for wall in walls {
         let mut layers: Vec<Value> = Vec::new();
         for (link, &resistance) in wall.resistances.iter().enumerate() {
@@ -91,7 +110,12 @@ fn plan(walls: &[Wall]) -> Plan {
                 layers.push(json!({"name": "massless", "material": materials.len(), "nodes": 0}));
                 materials.push(json!({"kind": "resistance", "resistance": number(resistance)}));
             }
-            if let Some(&[thickness, conductivity, capacity]) = wall.cells.get(link) {
+            if wall.heated.contains(&link) {
+                heat_sources.push(json!({
+                    "name": "mat", "surface": surfaces.len(), "layer": layers.len() - 1,
+                    "means": {"kind": "electric", "power": one}
+                }));
+            } else if let Some(&[thickness, conductivity, capacity]) = wall.cells.get(link) {
                 layers.push(json!({
                     "name": "solid", "material": materials.len(), "nodes": 1, "thickness": number(thickness)
                 }));
@@ -117,7 +141,7 @@ fn plan(walls: &[Wall]) -> Plan {
     });
     let description = json!({
         "parameters": parameters, "site": site, "materials": materials, "constructions": constructions,
-        "zones": [], "surfaces": surfaces
+        "zones": [], "surfaces": surfaces, "heat_sources": heat_sources
     });
     Plan::new(serde_json::from_value(description).unwrap()).unwrap()
 }
@@ -149,6 +173,8 @@ fn compare(walls: &[Wall], random: &mut Random, diagonal: f64, dt: f64) {
             (random.many(2 * walls.len(), -10.0, 40.0), random.many(2 * walls.len(), -10.0, 40.0));
         let ratio = (1.0 - diagonal) / diagonal;
         let (mut stored, mut expected_stored) = (0.0, 0.0);
+        let count = plan.description.heat_sources.len();
+        let heat = [random.many(count, -50.0, 100.0), random.many(count, -50.0, 100.0)];
         maps.begin();
         let mut expected = Vec::new();
         maps.first_sources(&chains, &cells, &mut sources);
@@ -157,22 +183,30 @@ fn compare(walls: &[Wall], random: &mut Random, diagonal: f64, dt: f64) {
                 maps.set_first_surfaces(&first);
                 maps.second_sources(&mut sources);
             }
+            let released: Vec<_> = heat[stage].iter().map(|&heat| SourceConditions::of_heat(heat)).collect();
+            maps.release(stage, &released, &mut sources);
             expected.clear();
+            let mut before = 0;
             for (w, wall) in walls.iter().enumerate() {
                 let (begin, links) = (plan.walls[w].first_cell, wall.conductances());
                 let own = &start[begin..begin + wall.cells.len()];
+                let [first_heat, own_heat] =
+                    [&heat[0], &heat[stage]].map(|heat| &heat[before..before + wall.heated.len()]);
+                before += wall.heated.len();
                 let mut from = own.to_vec();
                 if stage == 1 {
-                    let reached = wall.stage(diagonal * dt, own, [first[2 * w], first[2 * w + 1]]);
+                    let surfaces = [first[2 * w], first[2 * w + 1]];
+                    let reached = wall.stage(diagonal * dt, own, surfaces, first_heat);
                     for (from, reached) in from.iter_mut().zip(reached) {
                         *from += ratio * (reached - *from);
                     }
                 }
-                let free = wall.stage(diagonal * dt, &from, [0.0; 2]);
-                let heat = [links[0] * free[0], links[free.len()] * free[free.len() - 1]];
-                let error = apart(&sources[w], &heat);
+                let free = wall.stage(diagonal * dt, &from, [0.0; 2], own_heat);
+                let into = [links[0] * free[0], links[free.len()] * free[free.len() - 1]];
+                let error = apart(&sources[w], &into);
                 assert!(error < 1e-12, "{} cells, stage {stage}: heat is {error:e} apart", own.len());
-                let reached = wall.stage(diagonal * dt, &from, [last[2 * w], last[2 * w + 1]]);
+                let surfaces = [last[2 * w], last[2 * w + 1]];
+                let reached = wall.stage(diagonal * dt, &from, surfaces, own_heat);
                 if stage == 1 || diagonal == 1.0 {
                     for ((reached, own), [thickness, _, capacity]) in reached.iter().zip(own).zip(&wall.cells)
                     {
@@ -218,11 +252,31 @@ fn maps_of_many_walls_do_not_mix() {
     }
 }
 
+/// Heat is released between layers, at one place or two; another wall has none.
+#[test]
+fn heat_is_released_in_walls() {
+    let mut random = Random(8);
+    for cells in [2, 5, 11, 60] {
+        for diagonal in [SDIRK2, BACKWARD_EULER] {
+            let walls = [
+                Wall::random(&mut random, cells).heated(&[0]),
+                Wall::random(&mut random, 3),
+                Wall::random(&mut random, cells + 1).heated(&[0, cells - 1]),
+            ];
+            compare(&walls, &mut random, diagonal, 900.0);
+        }
+    }
+}
+
 /// Two layers of one cell each, at rest between two surfaces: nothing changes and the heat is that of the resistances.
 #[test]
 fn a_steady_state_stays() {
-    let wall =
-        Wall { area: 3.0, cells: vec![[0.1, 0.5, 2e6], [0.2, 2.0, 1e6]], resistances: vec![0.0, 0.3, 0.0] };
+    let wall = Wall {
+        area: 3.0,
+        cells: vec![[0.1, 0.5, 2e6], [0.2, 2.0, 1e6]],
+        resistances: vec![0.0, 0.3, 0.0],
+        heated: Vec::new(),
+    };
     // 0.2 + 0.3 + 0.1 m2 K/W, 30 K apart: 50 W/m2.
     let (surfaces, flux) = ([30.0, 0.0], 50.0);
     let mut cells = vec![30.0 - flux * 0.1, flux * 0.05];
