@@ -256,6 +256,7 @@ fn ventilated() -> Plan {
         [("open", 40.0), ("closed", 20.0)].map(|(name, minutes)| Some(b.number(name, minutes)));
     b.description.controls.push(VentControl {
         name: "night".to_owned(),
+        reference_zone: None,
         zone: 0,
         indoor,
         difference,
@@ -323,6 +324,7 @@ fn minimum_times() {
     let (minimum_open_time, minimum_closed_time) = (Some(number("open", 60.0)), Some(number("closed", 30.0)));
     b.description.controls.push(VentControl {
         name: "outdoor".to_owned(),
+        reference_zone: None,
         zone: 0,
         indoor: None,
         outdoor: Some(outdoor),
