@@ -18,7 +18,6 @@ import pandas as pd
 
 from mascarin.building import Building
 from mascarin.errors import InputError, SolverError
-from mascarin.simulation.results import Results
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate
 
@@ -229,8 +228,8 @@ def check(
         found.unsolved += 1
     except Exception as error:
         found.faults.append(f"{error!r}: {tree!r}")
-    # Five runs of two days.
-    found.slow += time.process_time() - began > SLOWEST * 2.0 * 5.0
+    # Six runs of two days.
+    found.slow += time.process_time() - began > SLOWEST * 2.0 * 6.0
 
 
 def _check(
@@ -264,8 +263,8 @@ def _check(
     if off > ORDER:
         problems.append(f"another order of the objects that changes the records by {off:.3g}")
     if not passive:
-        problems += _linearly_implicit(building, weather, alone)
-        found.runs += 1
+        problems += _linearly_implicit(building, weather)
+        found.runs += 2
     if passive:
         air = weather.data["air_temperature"]
         low, high = min(float(air.min()), 9.0, 12.0), max(float(air.max()), 9.0, 12.0)
@@ -278,9 +277,15 @@ def _check(
     found.faults += [f"{problem}: {tree!r}" for problem in problems]
 
 
-def _linearly_implicit(building: Building, weather: Climate, alone: Results) -> list[str]:
-    """What does not hold in a run with one linear solve a stage, beside the run of the default scheme."""
-    run = Simulation(building, weather, step=STEP, scheme="linearly-implicit").run()
+def _linearly_implicit(building: Building, weather: Climate) -> list[str]:
+    """What does not hold in a run with one linear solve a stage, beside the run of the default scheme.
+
+    Both begin at one temperature. Periodic starts end where a repetition changes little: two of a building
+    of very heavy walls were 0.16 K apart, while the schemes agree within 1e-8 K from one start.
+    """
+    options: dict[str, Any] = {"step": STEP, "initial": START}
+    alone = Simulation(building, weather, **options).run()
+    run = Simulation(building, weather, scheme="linearly-implicit", **options).run()
     if not np.isfinite(run.records).all():
         return ["records of the linearly implicit scheme that are not finite"]
     problems = []
@@ -294,6 +299,8 @@ def _linearly_implicit(building: Building, weather: Climate, alone: Results) -> 
     return problems
 
 
+#: Temperature that runs of both schemes begin at. [degC]
+START = 18.0
 #: Airs of the linearly implicit scheme beside the default one, root mean square. [K]
 NEAR = 0.1
 #: Records of the same building in another order: the solver stops at other residuals. [K]
