@@ -219,3 +219,23 @@ def test_people_follow_the_air_temperature(tmp_path: Path) -> None:
     assert (float(crowd.power or 0), float(crowd.radiative), float(crowd.activity or 0)) == (240, 0.3, 120)
     (finding,) = [item for item in conversion.findings if item.kind == "People"]
     assert "moisture is left out" in finding.effect
+
+
+@pytest.mark.parametrize(
+    ("line", "warm"),
+    [
+        ("ZoneCrossMixing,mix,b,on,Flow/Zone,0.05,,,,a,3;", "a"),
+        ("ZoneMixing,mix,b,on,Flow/Zone,0.05,,,,a,3;", "a"),
+        ("ZoneMixing,mix,b,on,Flow/Zone,0.05,,,,a,-3;", "b"),
+    ],
+)
+def test_mixing_at_a_temperature_difference_is_controlled(tmp_path: Path, line: str, warm: str) -> None:
+    """Above zero the source has to be warmer by it, below zero colder; the flow is between both zones."""
+    conversion = changed(tmp_path, "oa_mixing", ("ZoneMixing,mix,b,on,Flow/Zone,0.05,,,,a,0;", line))
+    (path,) = conversion.building.air_paths.values()
+    assert path.control is not None
+    control = conversion.building.controls[path.control]
+    assert (control.zone, control.reference_zone) == (warm, "b" if warm == "a" else "a")
+    assert control.difference is not None
+    assert (float(control.difference.open), float(control.difference.close)) == (3.0, 3.0)
+    assert set(path.between) == {"a", "b"}
