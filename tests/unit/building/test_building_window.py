@@ -290,3 +290,15 @@ def test_shades_and_beam_tracing_need_vertices() -> None:
     half = drawn(shades={"s": {"vertices": [[0, 0, 3], [1, 0, 3], [1, -1, 3]]}}, sun="area")
     bare = {"windows.one.vertices": None, "windows.one.area": 6}
     assert any("shades: without effect on one" in line for line in check(half.replace(bare)))
+
+
+@pytest.mark.parametrize("law", ["doe2", "tarp"])
+def test_a_pane_is_very_smooth_where_nothing_is_stated(law: str) -> None:
+    """A wall is medium rough; a stated roughness holds for both."""
+    building = box(windows__pane__outside__convection=law, surfaces__south__outside__convection=law)
+    stated = box(windows__pane__outside__convection={"kind": law, "roughness": "smooth"})
+    path = "windows.pane.outside.convection.roughness"
+    assert building.parameter(path).value == 1.0
+    assert building.parameter(path).assumed
+    assert building.parameter("surfaces.south.outside.convection.roughness").value == 1.52
+    assert stated.parameter(path).value == 1.11

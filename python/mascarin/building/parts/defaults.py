@@ -166,11 +166,19 @@ def _coldest_day(latitude: float) -> Number:
 
 
 def _derived_convection(
-    convection: Convection, outdoors: bool, area: float, tilt: float, polygon: Polygon | None
+    convection: Convection,
+    outdoors: bool,
+    area: float,
+    tilt: float,
+    polygon: Polygon | None,
+    *,
+    glass: bool = False,
 ) -> Convection:
     if isinstance(convection, ConvectionLaw):
         with _located_below("convection"):
             numbers = _of_law(convection, outdoors, area, tilt, polygon)
+            if glass and "roughness" in numbers:
+                numbers["roughness"] = _roughness_of_glass(convection)
         return convection.model_copy(update=numbers) if numbers else convection
     if isinstance(convection, FormulaLaw):
         with _located_below("convection"):
@@ -197,6 +205,12 @@ def _of_law(
             type(law), number.name, value, source, assumed=number.assumed is not None
         )
     return numbers
+
+
+def _roughness_of_glass(law: ConvectionLaw) -> Number:
+    roughness = next(number for number in law.row.numbers if number.name == "roughness")
+    smooth = roughness.quantity.words["very_smooth"]
+    return derived_number(type(law), "roughness", smooth, "Walton 1983: very smooth, as glass", assumed=True)
 
 
 def _shape_of(word: str, area: float, tilt: float, polygon: Polygon | None) -> tuple[float, str]:
@@ -285,7 +299,7 @@ def _derived_window(window: Window, wall: Surface, polygon: Polygon | None) -> W
     ):
         with _located_below(side):
             films[side] = _derived_convection(
-                film, bool(face.outdoors), area, float(wall.tilt or 0.0), polygon
+                film, bool(face.outdoors), area, float(wall.tilt or 0.0), polygon, glass=True
             )
     height = outside.height
     if not wall.outside.outdoors:
