@@ -39,6 +39,8 @@ _UNNAMED: Final = 0.5
 _MOST_CAUSES: Final = 5
 _MOST_LISTED: Final = 6
 _SEED: Final = 41
+#: A size that is known before differs from the estimate by no more than this. [standard deviations]
+_FAR: Final = 3.0
 #: Faults over the whole record beside which the sizes of the errors are estimated, and how large they may be,
 #: in standard deviations of their prior.
 _BROAD: Final = ("offset", "gain", "drift", "clock")
@@ -275,12 +277,20 @@ def diagnose(
             candidate.group == "data" for candidate in (finding.candidate, *finding.others)
         ):
             break  # what is left depends on which of them it is
+        if _bends_the_fit(scores, numbers[0], finding):
+            break  # what is left is that of a fit to faulty data
         # An error of the model that is not told may be any of these; a fault of a sensor has to remain
         # beside all of them.
         for k, column in zip(numbers, columns.T, strict=True):
             scores = scores.given(k, column)
     findings.sort(key=lambda cause: not cause.told)
     return CauseSearch(tuple(findings), first_p, hypotheses.count, draws, covariance)
+
+
+def _bends_the_fit(scores: Scores, k: int, finding: CauseEstimate) -> bool:
+    """Whether a fault of known size, as of exchanged columns, has another one about the fitted model."""
+    known = finding.candidate.group == "data" and scores.mean[k] != 0.0
+    return known and abs(scores.estimate(k)[0] - scores.mean[k]) > _FAR * scores.sd[k]
 
 
 def _finding(
