@@ -289,8 +289,8 @@ def diagnose(
 
 def _bends_the_fit(scores: Scores, k: int, finding: CauseEstimate) -> bool:
     """Whether a fault of known size, as of exchanged columns, has another one about the fitted model."""
-    known = finding.candidate.group == "data" and scores.mean[k] != 0.0
-    return known and abs(scores.estimate(k)[0] - scores.mean[k]) > _FAR * scores.sd[k]
+    size_is_known = finding.candidate.group == "data" and scores.mean[k] != 0.0
+    return size_is_known and abs(scores.estimate(k)[0] - scores.mean[k]) > _FAR * scores.sd[k]
 
 
 def _finding(

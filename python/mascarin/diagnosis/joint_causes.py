@@ -88,8 +88,8 @@ def subsets_of(scores: Scores, numbers: Sequence[int], columns: Floats, weights:
     >>> round(both.included(0), 3), round(both.beside(1, 0), 3)
     (1.0, 1.0)
     """
-    few, first = scores.among(numbers), len(scores.named)
-    few = replace(few, log_prior=few.log_prior + np.concatenate([np.zeros(first), weights]))
+    chosen, first = scores.among(numbers), len(scores.named)
+    chosen = replace(chosen, log_prior=chosen.log_prior + np.concatenate([np.zeros(first), weights]))
     rows = [*(k for k, _ in scores.named), *numbers]
     pairs = columns[rows]
 
@@ -102,10 +102,10 @@ def subsets_of(scores: Scores, numbers: Sequence[int], columns: Floats, weights:
             for subset, further in evidence(now.given(first + k, pairs[:, k]), k + 1, (*members, k)):
                 yield subset, float(of_each[first + k]) + further
 
-    found = list(evidence(few, 0, ()))
-    members = np.zeros((len(found), len(numbers)), dtype=bool)
-    for row, (subset, _) in zip(members, found, strict=True):
+    weighed = list(evidence(chosen, 0, ()))
+    members = np.zeros((len(weighed), len(numbers)), dtype=bool)
+    for row, (subset, _) in zip(members, weighed, strict=True):
         row[list(subset)] = True
-    logarithms = np.array([total for _, total in found])
+    logarithms = np.array([total for _, total in weighed])
     probability = np.exp(logarithms - logarithms.max())
     return Subsets(members, probability / probability.sum())
