@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import LAST, PERIODS, WEATHER, ZONE, experiment
+from diagnosis import BUILDING, LAST, PERIODS, WEATHER, experiment
 from mascarin import Study
 from mascarin.examples import STUDIES
 from mascarin.linear_algebra import one_thread
@@ -60,12 +60,6 @@ OF_CURVE = {
     "materials.energain.specific_heat.liquid": "cl",
 }
 FIXED = {"cl": 2833.0, "rho_ground": 0.2}
-#: The roof of the other program is flat.
-BUILDING = {
-    "site.timezone": ZONE,
-    "surfaces.roof.outside.area_factor": 1.0,
-    "surfaces.roof.inside.area_factor": 1.0,
-}
 DAYS = {5: PERIODS["identification"], 20: ["2023-06-09T00:00", "2023-06-29T00:00"]}
 FORMS = ("outside convection", "diffuse radiation")
 DRAWS = 2000

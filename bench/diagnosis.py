@@ -7,6 +7,10 @@ experiment is diagnosed as it is (``clean``), and with one fault planted in its 
 uncertainties and more. Without names of faults all of ``PLANTED`` are taken in turn, one for each seed. Every
 result is a file of FOLDER and is not computed again; the table of all results is printed at the end.
 
+The form of the model is the one that the study with its alternatives uses on the experiment as it is: of a
+file of ``bench/coverage_foreign.py`` in FOLDER, or found in the same way (a minute or two), once for each
+seed. Estimates are those of a study: parameters together with errors of sensors and model.
+
 ``python bench/diagnosis.py arrays [count]`` draws records of three sensors from a known covariance of errors,
 estimates the covariance again from each, and counts how often a cause is named.
 """
@@ -52,6 +56,12 @@ WEATHER = {
 PERIODS = {
     "warm_up": ["2023-06-01T00:00", "2023-06-04T00:00"],
     "identification": ["2023-06-14T00:00", "2023-06-19T00:00"],
+}
+#: The roof of the other program is flat.
+BUILDING = {
+    "site.timezone": ZONE,
+    "surfaces.roof.outside.area_factor": 1.0,
+    "surfaces.roof.inside.area_factor": 1.0,
 }
 LAST = "07-05"
 MIDDLE = "2023-06-22"
@@ -118,15 +128,32 @@ def experiment(folder: Path, program: Path, seed: int) -> pd.DataFrame:
     return pd.read_csv(table, index_col="time", parse_dates=True)
 
 
-def study_of(table: pd.DataFrame) -> Study:
+def form_of(folder: Path, program: Path, seed: int) -> dict[str, str]:
+    """The form that a study with alternatives uses: part of the model -> name of the alternative."""
+    from coverage_foreign import calibrated
+    from coverage_foreign import study_of as with_alternatives
+
+    known, path = folder / f"coverage-5-{seed}.json", folder / f"form-{seed}.json"
+    if known.exists():
+        return dict(json.loads(known.read_text())["form"])
+    if not path.exists():
+        _, _, form = calibrated(with_alternatives(folder, program, seed, 5, true_form=False))
+        path.write_text(json.dumps(form))
+    return dict(json.loads(path.read_text()))
+
+
+def study_of(table: pd.DataFrame, form: dict[str, str]) -> Study:
     """The LGI study with other data, one form and no variants."""
     base = Study.from_yaml(STUDIES["lgi"])
     plan = base.plan.identification
     assert plan is not None
     kept = plan.model_dump(mode="json", exclude_unset=True)
-    table = table.tz_localize("Etc/GMT-4")
+    table, building = table.tz_localize("Etc/GMT-4"), base.building.replace(BUILDING)
+    for part, name in form.items():
+        changes = base.plan.alternatives[part][name].model_dump(mode="json", exclude_unset=True)["changes"]
+        building = building.replace(changes)
     return Study(
-        building=base.building.replace({"site.timezone": ZONE}),
+        building=building,
         climate=Climate.from_table(table, columns=WEATHER),
         measurements=Measurements.from_table(table),
         sensors={name: one.model_dump(exclude_unset=True) for name, one in base.plan.sensors.items()},
@@ -137,18 +164,18 @@ def study_of(table: pd.DataFrame) -> Study:
     )
 
 
-def judged(table: pd.DataFrame) -> dict[str, Any]:
+def judged(table: pd.DataFrame, form: dict[str, str]) -> dict[str, Any]:
     """Calibrate and diagnose."""
-    began = time.monotonic()
-    study = study_of(table)
+    began = time.process_time()
+    study = study_of(table, form)
     with (
         tempfile.TemporaryDirectory() as folder,
         Workspace(Path(folder), study.context.identity()) as workspace,
     ):
-        # The calibration without errors of sensors: the diagnosis estimates those of the model itself.
-        run, fit = ModelRuns(study.context, workspace).fitted()
-        result = diagnosis(study.context, run, fit, workspace)
-    return {**result.to_dict(), "seconds": time.monotonic() - began}
+        combination = ModelRuns(study.context, workspace).combination()
+        used = combination.forms[0]
+        result = diagnosis(study.context, used.run, used.fit, workspace, combination=combination)
+    return {**result.to_dict(), "processor_seconds": time.process_time() - began}
 
 
 def tested(content: dict[str, Any]) -> list[dict[str, Any]]:
@@ -168,7 +195,7 @@ def vsim(folder: Path, program: Path, first: int, count: int, names: list[str]) 
             table = experiment(folder, program, seed)
             if name != "clean":
                 PLANTED[name][0](table)
-            path.write_text(json.dumps(judged(table), indent=1))
+            path.write_text(json.dumps(judged(table, form_of(folder, program, seed)), indent=1))
             show(seed, name, json.loads(path.read_text()))
     summary(folder)
 
@@ -177,12 +204,12 @@ def show(seed: int, name: str, content: dict[str, Any]) -> None:
     """Print what was found."""
     causes = tested(content)
     said = causes[0]["text"] if causes else "nothing"
-    print(f"{seed} {name} | p {content['p']:.3g} | {content['seconds']:.0f} s | {said}", flush=True)
+    print(f"{seed} {name} | p {content['p']:.3g} | {content['processor_seconds']:.0f} s | {said}", flush=True)
 
 
 def summary(folder: Path) -> None:
-    """Print the rates over all results in a folder, with their intervals."""
-    clean, planted, silent = [], [], 0
+    """Print the rates over all results in a folder, with their intervals, and those of each kind."""
+    clean, planted, silent, of_kind = [], [], 0, {name: [] for name in PLANTED}
     for path in sorted(folder.glob("diagnosis-*-*.json")):
         _, _, name = path.stem.split("-", 2)
         causes = tested(json.loads(path.read_text()))
@@ -192,12 +219,14 @@ def summary(folder: Path) -> None:
             _, kinds, subject = PLANTED[name]
             right = bool(causes) and causes[0]["what"] in kinds and subject in causes[0]["subject"]
             planted.append(right)
+            of_kind[name].append(right)
             silent += not causes
     for title, hits in (("clean, a sensor accused", clean), ("planted, named first", planted)):
         if hits:
             low, high = stats.binomtest(sum(hits), len(hits)).proportion_ci(method="exact")
             print(f"{title}: {sum(hits)} of {len(hits)} (95 %: {100 * low:.0f} to {100 * high:.0f} %)")
     print(f"planted, nothing named: {silent}")
+    print("named first, by kind:", ", ".join(f"{k} {sum(v)} of {len(v)}" for k, v in of_kind.items() if v))
 
 
 def arrays(count: int) -> None:

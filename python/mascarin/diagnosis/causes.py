@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from mascarin.calibration.errors.day_blocks import DayGaussian
 from mascarin.diagnosis.error_covariance import ErrorCovariance, estimate_error_covariance
 from mascarin.diagnosis.hypotheses import Candidate, DiagnosisInput
+from mascarin.diagnosis.joint_causes import subsets_of
 from mascarin.diagnosis.likelihood_ratio import Scores, Simulator, p_value
 from mascarin.diagnosis.step_changes import Hypotheses
 
@@ -38,6 +39,8 @@ _UNNAMED: Final = 0.5
 _MOST_CAUSES: Final = 5
 _MOST_LISTED: Final = 6
 _SEED: Final = 41
+#: A size that is known before differs from the estimate by no more than this. [standard deviations]
+_FAR: Final = 3.0
 #: Faults over the whole record beside which the sizes of the errors are estimated, and how large they may be,
 #: in standard deviations of their prior.
 _BROAD: Final = ("offset", "gain", "drift", "clock")
@@ -168,6 +171,10 @@ def scores_of(inputs: DiagnosisInput, hypotheses: Hypotheses, gaussian: DayGauss
         hypotheses.spread([candidate.mean for candidate in inputs.candidates]),
         hypotheses.spread([candidate.sd for candidate in inputs.candidates]),
         hypotheses.spread(prior, times=True),
+        limits=np.stack(
+            [hypotheses.spread([candidate.limits[end] for candidate in inputs.candidates]) for end in (0, 1)],
+            axis=1,
+        ),
     )
 
 
@@ -264,25 +271,32 @@ def diagnose(
         first_p = first_p if findings else p
         if p >= LEVEL:
             break
-        numbers, finding = _finding(given, hypotheses, scores, p)
+        numbers, columns, finding = _finding(given, hypotheses, gaussian, scores, p)
         findings.append(finding)
         if not finding.told and any(
             candidate.group == "data" for candidate in (finding.candidate, *finding.others)
         ):
             break  # what is left depends on which of them it is
+        if _bends_the_fit(scores, numbers[0], finding):
+            break  # what is left is that of a fit to faulty data
         # An error of the model that is not told may be any of these; a fault of a sensor has to remain
         # beside all of them.
-        for k in numbers:
-            signature = np.where(gaussian.present, hypotheses.candidate(k).signature, 0.0)
-            scores = scores.given(k, hypotheses.scores(gaussian.solve(signature)[:, :, None])[:, 0])
+        for k, column in zip(numbers, columns.T, strict=True):
+            scores = scores.given(k, column)
     findings.sort(key=lambda cause: not cause.told)
     return CauseSearch(tuple(findings), first_p, hypotheses.count, draws, covariance)
 
 
+def _bends_the_fit(scores: Scores, k: int, finding: CauseEstimate) -> bool:
+    """Whether a fault of known size, as of exchanged columns, has another one about the fitted model."""
+    size_is_known = finding.candidate.group == "data" and scores.mean[k] != 0.0
+    return size_is_known and abs(scores.estimate(k)[0] - scores.mean[k]) > _FAR * scores.sd[k]
+
+
 def _finding(
-    inputs: DiagnosisInput, hypotheses: Hypotheses, scores: Scores, p: float
-) -> tuple[list[int], CauseEstimate]:
-    """The most probable candidate, what else it may be, and the numbers of all of them."""
+    inputs: DiagnosisInput, hypotheses: Hypotheses, gaussian: DayGaussian, scores: Scores, p: float
+) -> tuple[list[int], Floats, CauseEstimate]:
+    """The most probable candidate and its alternatives: numbers, columns of ``G' C^-1 G``, and words."""
     evidence = scores.evidence()
     share = np.exp(evidence - evidence.max())
     share /= share.sum()
@@ -295,18 +309,26 @@ def _finding(
         if key not in best or share[k] > share[best[key]]:
             best[key] = k
     order = sorted(of_key, key=lambda key: -of_key[key])
-    k, total = best[order[0]], of_key[order[0]]
-    numbers = [k]
+    listed, total = [order[0]], of_key[order[0]]
     for key in order[1:]:
-        if total >= _LISTED or len(numbers) > _MOST_LISTED:
+        if total >= _LISTED or len(listed) > _MOST_LISTED:
             break
         total += of_key[key]
-        numbers.append(best[key])
+        listed.append(key)
+    numbers = [best[key] for key in listed]
+    signatures = np.stack([hypotheses.candidate(k).signature for k in numbers], axis=2)
+    columns = hypotheses.scores(gaussian.solve(np.where(gaussian.present[:, :, None], signatures, 0.0)))
+    # A candidate stands for all that say the same of what is wrong.
+    weights = np.log([of_key[key] / share[k] for key, k in zip(listed, numbers, strict=True)])
+    subsets = subsets_of(scores, numbers, columns, weights)
+    # What is there beside the first one is a cause of its own and no alternative.
+    instead = [0, *(m for m in range(1, len(numbers)) if subsets.beside(m, 0) < _LISTED)]
+    probability = total * subsets.included(0)
+    k = numbers[0]
     candidate = hypotheses.candidate(k)
     size, error = scores.estimate(k)
-    probability = of_key[order[0]]
     tells = candidate.group == "data" or inputs.forms > 1
-    return numbers, CauseEstimate(
+    return [numbers[m] for m in instead], columns[:, instead], CauseEstimate(
         candidate,
         candidate.known + candidate.scale * size,
         abs(candidate.scale) * error,
@@ -314,5 +336,5 @@ def _finding(
         min(probability * (1.0 - p), inputs.model_weight if tells else min(inputs.model_weight, _UNNAMED)),
         float(scores.log_bayes_factors()[k]),
         probability >= _DISTINCT_PROBABILITY and tells,
-        tuple(hypotheses.candidate(number) for number in numbers[1:]),
-    )
+        tuple(hypotheses.candidate(numbers[m]) for m in instead[1:]),
+    )  # fmt: skip

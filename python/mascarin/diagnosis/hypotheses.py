@@ -78,6 +78,9 @@ class Candidate:
         From when on, from the midnight before the record; NaN: in the whole record. [h]
     known : float
         Value at a size of 0. [unit]
+    limits : tuple of float
+        Smallest and largest size that has a meaning, as no absorptance is negative; the prior is zero beyond.
+        [-]
 
     Examples
     --------
@@ -97,6 +100,7 @@ class Candidate:
     later: What | None = None
     start: float = math.nan
     known: float = 0.0
+    limits: tuple[float, float] = (-math.inf, math.inf)
 
     @property
     def key(self) -> tuple[str, ...]:

@@ -6,6 +6,10 @@ of the size, mean m and standard deviation d, the Bayes factor against no cause 
 
     log B = ((s + m / d^2)^2 / (v + 1 / d^2) - (m / d)^2 - log(1 + v d^2)) / 2
 
+A size may have limits, beyond which it has no meaning. The prior is then the same normal distribution within
+them, and ``log B`` has added the logarithm of what part of the posterior lies within them, less that of the
+prior (Gelfand et al. 1992).
+
 The largest of many dependent Bayes factors is simulated: records without a cause are drawn from C, and the
 part of them whose largest one reaches the observed one is its p value, whatever the number of candidates, of
 times among them, and their dependence.
@@ -14,6 +18,8 @@ References
 ----------
 Kass R.E., Raftery A.E. (1995), Bayes factors, J. Am. Stat. Assoc. 90, 773.
 https://doi.org/10.1080/01621459.1995.10476572
+Gelfand A.E., Smith A.F.M., Lee T.-M. (1992), Bayesian analysis of constrained parameter and truncated data
+problems, J. Am. Stat. Assoc. 87, 523. https://doi.org/10.1080/01621459.1992.10475235
 Westfall P.H., Young S.S. (1993), Resampling-based multiple testing, Wiley (maximum statistics).
 Davison A.C., Hinkley D.V. (1997), Bootstrap Methods and their Application, 4.2 (p values of simulations).
 https://doi.org/10.1017/CBO9780511802843
@@ -21,7 +27,9 @@ https://doi.org/10.1017/CBO9780511802843
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -31,6 +39,7 @@ from mascarin.calibration.errors.day_blocks import DayGaussian
 from mascarin.diagnosis.step_changes import Hypotheses
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 #: Records that are simulated at once.
 _CHUNK: Final = 100
@@ -51,7 +60,10 @@ class Scores:
     log_prior : ndarray, shape (K,)
         Logarithm of the probability of each candidate before the data, over that of none. [-]
     named : tuple of (int, ndarray)
-        Candidates that count as there, and their columns of ``G' C^-1 G``, each given those before it.
+        Candidates that count as there, and their columns of ``G' C^-1 G``, each given those before it. Their
+        sizes are normal, without limits.
+    limits : ndarray, shape (K, 2), optional
+        Smallest and largest sizes that have a meaning; absent: none has limits. [-]
 
     Examples
     --------
@@ -71,6 +83,7 @@ class Scores:
     sd: Floats
     log_prior: Floats
     named: tuple[tuple[int, Floats], ...] = ()
+    limits: Floats | None = None
 
     def log_bayes_factors(self, scores: Floats | None = None) -> Floats:
         """Return the logarithms of the Bayes factors, of other scores (K, n) if there are any. [-]"""
@@ -79,7 +92,24 @@ class Scores:
         precision, mean = (self.sd**-2.0).reshape(shape), self.mean.reshape(shape)
         v = self.information.reshape(shape)
         square = (score + mean * precision) ** 2 / (v + precision)
-        return np.asarray(0.5 * (square - mean**2 * precision - np.log1p(v / precision)))
+        log_factors = np.asarray(0.5 * (square - mean**2 * precision - np.log1p(v / precision)))
+        for k in self._limited:
+            low, high = self._ends[k]
+            total = self.information[k] + self.sd[k] ** -2.0
+            middle, root = (score[k] + self.mean[k] / self.sd[k] ** 2) / total, total**0.5
+            log_factors[k] += log_mass((low - middle) * root, (high - middle) * root)
+            log_factors[k] -= log_mass(*((np.array([low, high]) - self.mean[k]) / self.sd[k]))
+        return log_factors
+
+    @property
+    def _ends(self) -> Floats:
+        """Limits of all candidates, shape (K, 2)."""
+        return np.tile([-np.inf, np.inf], (self.sd.size, 1)) if self.limits is None else self.limits
+
+    @cached_property
+    def _limited(self) -> Integers:
+        """Numbers of the candidates with limits."""
+        return np.flatnonzero(np.isfinite(self._ends).any(axis=1))
 
     def evidence(self, scores: Floats | None = None) -> Floats:
         """Return the Bayes factors times the prior probabilities, as logarithms. [-]"""
@@ -87,14 +117,40 @@ class Scores:
         return log_factors + self.log_prior.reshape(-1, *(1,) * (log_factors.ndim - 1))
 
     def estimate(self, k: int) -> tuple[float, float]:
-        """Return the size of a candidate and its standard error. [-]"""
+        """Return the size of a candidate and its standard error, within its limits. [-]"""
+        from scipy import stats
+
         precision = self.sd[k] ** -2.0
         total = float(self.information[k] + precision)
-        return float(self.score[k] + self.mean[k] * precision) / total, total**-0.5
+        middle, error = float(self.score[k] + self.mean[k] * precision) / total, total**-0.5
+        low, high = (self._ends[k] - middle) / error
+        if np.isinf(low) and np.isinf(high):
+            return middle, error
+        within = stats.truncnorm(low, high, loc=middle, scale=error)
+        return float(within.mean()), float(within.std())
 
     def gain(self, k: int, column: Floats) -> float:
         """Part of a score that a candidate of unknown size takes from it. [-]"""
         return float(self.sd[k] ** 2 / (1.0 + self.sd[k] ** 2 * column[k]))
+
+    def among(self, numbers: Sequence[int]) -> Scores:
+        """Return the scores of those that are named and of a few others, in this order.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The others.
+        """
+        rows = [*(k for k, _ in self.named), *numbers]
+        return Scores(
+            self.score[rows],
+            self.information[rows],
+            self.mean[rows],
+            self.sd[rows],
+            self.log_prior[rows],
+            tuple((row, column[rows]) for row, (_, column) in enumerate(self.named)),
+            self._ends[rows],
+        )
 
     def given(self, k: int, column: Floats) -> Scores:
         """Return the scores of all candidates if candidate k is there, with a size that is not known.
@@ -172,6 +228,28 @@ class Simulator:
                 simulated *= np.sqrt(self.freedom / rng.chisquare(self.freedom, count))
             largest_evidence[first : first + count] = scores.evidence(simulated).max(axis=0)
         return largest_evidence
+
+
+def log_mass(low: Floats, high: Floats) -> Floats:
+    """Compute the logarithm of the part of a standard normal distribution between two numbers. [-]
+
+    Parameters
+    ----------
+    low, high : ndarray
+        With ``low < high``; may be infinite. [-]
+
+    Examples
+    --------
+    >>> log_mass(np.array([-np.inf, 6.0]), np.array([0.0, np.inf])).round(2)
+    array([ -0.69, -20.74])
+    """
+    from scipy.special import log_ndtr
+
+    # In the lower half the differences of both are exact.
+    swap = np.asarray(low) > 0.0
+    low, high = np.where(swap, -high, low), np.where(swap, -np.asarray(low), high)
+    above = log_ndtr(high)
+    return np.asarray(above + np.log1p(-np.exp(np.minimum(log_ndtr(low) - above, -1e-300))))
 
 
 def p_value(observed: float, simulated: Floats) -> float:

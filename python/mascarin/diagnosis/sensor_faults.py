@@ -159,7 +159,8 @@ def _of_sensor(series: SensorSeries, s: int) -> Iterator[Candidate]:
         yield from _clocks(series, s, _HOURS)
     for neighbour, other in series.neighbours.get(s, {}).items():
         signature = series.means({s: other - m})
-        yield Candidate("data", "place", name, signature, 0.0, _PART, 100.0, "%", f"part of {neighbour}")
+        detail, part = f"part of {neighbour}", (0.0, 1.0)
+        yield Candidate("data", "place", name, signature, 0.0, _PART, 100.0, "%", detail, limits=part)
 
 
 def _clocks(series: SensorSeries, s: int, hours: tuple[float, ...]) -> Iterator[Candidate]:

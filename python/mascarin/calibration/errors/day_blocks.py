@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Final
 
 import numpy as np
@@ -132,6 +132,15 @@ class DayGrid:
         return np.asarray(square / np.maximum(mask.sum(axis=0), 1))
 
 
+@lru_cache(maxsize=16)
+def _different(present: bytes, days: int) -> tuple[Flags, NDArray[np.int64]]:
+    """Different rows of what is there (D, n), and which of them each day has; asked for in each iteration."""
+    patterns, which = np.unique(
+        np.frombuffer(present, dtype=np.bool_).reshape(days, -1), axis=0, return_inverse=True
+    )
+    return patterns, which.reshape(-1).astype(np.int64)
+
+
 @dataclass(frozen=True, eq=False)
 class DayGaussian:
     """A normal distribution of values by day, with effects that the days share.
@@ -167,10 +176,10 @@ class DayGaussian:
 
         Most days have the same block and the same values, so that one inverse serves them all.
         """
-        patterns, which = np.unique(self.present, axis=0, return_inverse=True)
-        which = which.reshape(-1).astype(np.int64)
-        if self.blocks.strides[0] != 0:
-            patterns, which = self.present, np.arange(len(which))
+        if self.blocks.strides[0] == 0:
+            patterns, which = _different(self.present.tobytes(), len(self.present))
+        else:
+            patterns, which = self.present, np.arange(len(self.present))
         first = [int(np.flatnonzero(which == k)[0]) for k in range(len(patterns))]
         both = patterns[:, :, None] & patterns[:, None, :]
         eye = np.eye(self.blocks.shape[1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, Literal
@@ -60,7 +61,7 @@ class InputFault:
     unit: str
 
 
-def missing_paths(building: Building) -> Iterator[tuple[str, str, dict[str, Any], float, str]]:
+def missing_paths(building: Building) -> Iterator[tuple[str, str, dict[str, Any], float, str, float]]:
     """Heat flows that the model of a building may lack, one at a time.
 
     Parameters
@@ -70,13 +71,14 @@ def missing_paths(building: Building) -> Iterator[tuple[str, str, dict[str, Any]
 
     Yields
     ------
-    tuple of str, str, dict, float and str
-        Zone, what it is, changes as `Building.replace` takes them, size and its unit.
+    tuple of str, str, dict, float, str and float
+        Zone, what it is, changes as `Building.replace` takes them, size, its unit, and the smallest size: no
+        more air can be too much than there is.
     """
     for name, zone in building.zones.items():
         constant = float(zone.infiltration.constant)
         change = {f"zones.{name}.infiltration.constant": constant + _AIR_CHANGE}
-        yield name, "air change with outdoors", change, _AIR_CHANGE, "1/h"
+        yield name, "air change with outdoors", change, _AIR_CHANGE, "1/h", -constant
         area = sum(
             float(surface.area)
             for surface in building.surfaces.values()
@@ -91,6 +93,7 @@ def missing_paths(building: Building) -> Iterator[tuple[str, str, dict[str, Any]
                 {f"zones.{name}.thermal_bridges.{_NAME}": bridge},
                 size,
                 "W/K",
+                -math.inf,
             )
 
 

@@ -50,6 +50,9 @@ _ONE_FORM: Final = 0.95
 _OUTSIDE: Final = 1.0
 #: Prior of the size of another law about 1, of a missing heat flow and of an error of an input. [-]
 _LAW: Final = 0.3
+#: Sizes of another law: 0 is the present law, 1 the other one; a law that differs from the present one to
+#: the other side explains nothing. [-]
+_OF_LAW: Final = (0.0, 2.0)
 _PATH: Final = 1.0
 _INPUT: Final = 1.0
 #: Combinations of uncertain numbers whose effect is smaller than this part of the stated uncertainty are left
@@ -224,12 +227,13 @@ def _parameters(
     for k, path in enumerate(model.paths):
         low, high = model.range[path]
         width, now = high - low, model.simulation.value_in(vector, path)
-        unit = model.simulation.building.parameter(path).unit
+        parameter = model.simulation.building.parameter(path)
         # The whole change is that within the prior and that beyond it, in the ratio of their variances.
-        variance_ratio = 1.0 + (sd[k] / _OUTSIDE) ** 2
+        scale, middle = width * (1.0 + (sd[k] / _OUTSIDE) ** 2), now + center[k] * width
+        limits = (min((parameter.lower - middle) / scale, 0.0), max((parameter.upper - middle) / scale, 0.0))
         yield Candidate(
             "parameter", "parameter", (path,), series.grid.means(slopes[k], series.mask)[0], 0.0, _OUTSIDE,
-            width * variance_ratio, "" if unit == "-" else unit, known=now + center[k] * width,
+            scale, "" if parameter.unit == "-" else parameter.unit, known=middle, limits=limits,
         )  # fmt: skip
 
 
@@ -246,18 +250,21 @@ def _laws(
         other = model.of_form((part, kind), changes, vector)
         if np.isfinite(other).all():
             signature = series.grid.means(other - simulated, series.mask)[0]
-            yield Candidate("form", "form", (part,), signature, 1.0, _LAW, detail=kind)
+            yield Candidate("form", "form", (part,), signature, 1.0, _LAW, detail=kind, limits=_OF_LAW)
 
 
 def _paths(
     model: DiagnosisModel, series: SensorSeries, vector: Array, simulated: Array
 ) -> Iterator[Candidate]:
     """Heat flows that the model does not have."""
-    for zone, what, changes, size, unit in missing_paths(model.simulation.building):
+    for zone, what, changes, size, unit, least in missing_paths(model.simulation.building):
         other = model.of_form((zone, what), changes, vector)
         if np.isfinite(other).all():
             signature = series.grid.means(other - simulated, series.mask)[0]
-            yield Candidate("path", "path", (zone,), signature, 0.0, _PATH, size, unit, what)
+            yield Candidate(
+                "path", "path", (zone,), signature, 0.0, _PATH, size, unit, what,
+                limits=(least / size, math.inf),
+            )  # fmt: skip
 
 
 def _inputs(
