@@ -30,6 +30,8 @@ def zone(draw: Draw, schedules: Schedules, others: list[str]) -> Json:
         tree.setdefault("ventilation", {})[name] = flow | schedules.maybe("on", 0.5) | _density(draw)
     if draw.chance(0.2):
         tree["mixing_air_change"] = _mixing(draw, schedules)
+        # Without a draw of its own, so that cases keep their numbers.
+        tree["air_gradient"] = {"gradient": 0.5 * len(tree)}
     tree |= _loads(draw, schedules)
     if draw.chance(0.25):
         tree["thermal_bridges"] = {"edge": _bridge(draw, others)}

@@ -71,7 +71,7 @@ impl<S: Real> Conditions<S> {
         };
         let surfaces = coefficients.surfaces.iter().map(|surface| {
             let forced = surface.convection.as_ref().map_or([zero; 4], SurfaceConvection::calm);
-            SurfaceConditions { solar: zero, longwave: zero, temperature: zero, forced }
+            SurfaceConditions { solar: zero, longwave: zero, temperature: zero, air_shift: zero, forced }
         });
         Self {
             surfaces: surfaces.collect(),
@@ -117,6 +117,7 @@ impl<S: Real> Conditions<S> {
             at.solar = a.solar + (b.solar - a.solar) * of_sun;
             at.longwave = line(a.longwave, b.longwave);
             at.temperature = line(a.temperature, b.temperature);
+            at.air_shift = line(a.air_shift, b.air_shift);
             for k in 0..2 {
                 at.forced[k] = rate(a.forced[k], b.forced[k]);
             }
@@ -232,6 +233,9 @@ impl<S: Real> Conditions<S> {
             let air = self.airs.get(z).copied().unwrap_or_else(S::zero);
             at.update(zone, now.row, &self.densities, air);
         }
+        if coefficients.has_stratified {
+            self.stratify(plan, coefficients);
+        }
         for (at, path) in self.paths.iter_mut().zip(&coefficients.paths) {
             *at = path.conductance(now.row, &self.densities);
         }
@@ -247,6 +251,19 @@ impl<S: Real> Conditions<S> {
             }
             self.sun.distribute(plan, coefficients, &mut self.surfaces);
             self.sun.absorb_in_panes(plan, &mut self.surfaces);
+        }
+    }
+
+    /// Air in front of the surfaces of stratified zones.
+    // Few buildings have any.
+    #[inline(never)]
+    fn stratify(&mut self, plan: &Plan, coefficients: &Coefficients<S>) {
+        for (zone, at) in plan.zones.iter().zip(&self.zones) {
+            for &surface in &zone.surfaces {
+                if let Some(level) = coefficients.surfaces[surface].level {
+                    self.surfaces[surface].air_shift = at.gradient.scale(level);
+                }
+            }
         }
     }
 

@@ -23,6 +23,8 @@ pub struct SurfaceConditions<S: Real> {
     pub longwave: S,
     /// Temperature of the air, or the imposed temperature [degC].
     pub temperature: S,
+    /// Air in front of it less the mean of its zone [K].
+    pub air_shift: S,
     /// The parts of the surface heat transfer coefficient that depend on the wind and on what is around the surface.
     pub forced: Driven<S>,
 }

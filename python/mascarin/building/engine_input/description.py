@@ -26,6 +26,7 @@ from mascarin.building.engine_input.derived_outputs import describe_derived
 from mascarin.building.engine_input.heat_sources import describe_heat_source
 from mascarin.building.engine_input.humidity import describe_humidity
 from mascarin.building.engine_input.ids import Ids, Json, Positions, below, corners, each, fields_of
+from mascarin.building.engine_input.levels import levels
 from mascarin.building.engine_input.materials import describe_construction, describe_material
 from mascarin.building.engine_input.mesh import Mesh, choose
 from mascarin.building.engine_input.series_users import courses
@@ -128,7 +129,7 @@ def _describe(
         **_air(building, ids, positions),
         "openings": each(building.openings, "openings", ids, partial(describe_opening, building, positions)),
         **describe_vents(building, positions, ids),
-        "surfaces": _obstructed(
+        "surfaces": _placed(
             building,
             [
                 *each(
@@ -207,6 +208,11 @@ def _air(building: Description, ids: Mapping[str, int], positions: Positions) ->
     }
 
 
+def _placed(building: Description, written: list[Json]) -> list[Json]:
+    """Surfaces, windows and frames with what stands in front of them, and their heights in stratified air."""
+    return _levelled(building, _obstructed(building, written))
+
+
 def _obstructed(building: Description, written: list[Json]) -> list[Json]:
     """Surfaces, windows and frames with the surfaces in front of their sides."""
     indices = {name: index for index, name in enumerate(building.surfaces)}
@@ -216,6 +222,20 @@ def _obstructed(building: Description, written: list[Json]) -> list[Json]:
         for side in ("outside", "inside"):
             if obstacles := in_front.get((name, side)):
                 part[side]["shaded_by"] = [indices[other] for other in obstacles]
+    return written
+
+
+def _levelled(building: Description, written: list[Json]) -> list[Json]:
+    """The same with the heights of surfaces in stratified air."""
+    for zone, part in building.zones.items():
+        if part.air_gradient is None:
+            continue
+        names = [*building.surfaces, *building.windows]
+        for item, level in zip(building.connections.of(zone), levels(building, zone)[0], strict=True):
+            written[names.index(item.name)][item.side]["level"] = level
+            if item.window is not None and item.name in framed(building):
+                frame = len(names) + list(framed(building)).index(item.name)
+                written[frame][item.side]["level"] = level
     return written
 
 
