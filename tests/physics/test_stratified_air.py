@@ -24,12 +24,12 @@ OUTWARD = 1.0 / (0.1 / 0.04 + 1.0 / 20.0)
 
 def room(gradient: Any = GRADIENT, *, law: Any = None, vertices: bool = True, **zone: Any) -> Building:
     """A room of 4 x 3 x 2.5 m of light boards to air of a measured temperature, without radiation."""
-    corners = {
+    corners: dict[str, Any] = {
         "floor": [(0, 0, 0), (0, 3, 0), (4, 3, 0), (4, 0, 0)],
         "ceiling": [(0, 0, 2.5), (4, 0, 2.5), (4, 3, 2.5), (0, 3, 2.5)],
         "wall": [(0, 0, 0), (4, 0, 0), (4, 0, 2.5), (0, 0, 2.5)],
     }
-    plain = {
+    plain: dict[str, dict[str, Any]] = {
         "floor": {"area": AREA, "tilt": 180, "azimuth": 0},
         "ceiling": {"area": AREA, "tilt": 0, "azimuth": 0},
         "wall": {"area": 10, "tilt": 90, "azimuth": 180},

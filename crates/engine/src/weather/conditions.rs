@@ -16,7 +16,7 @@ pub use crate::weather::instant::{Instant, Weather};
 use crate::weather::mechanical_air::MechanicalConditions;
 pub use crate::weather::sun::SolarConditions;
 pub use crate::weather::surface::SurfaceConditions;
-use crate::weather::surface::{driven_outside, forced, imposed_temperature};
+use crate::weather::surface::{driven_outside, forced, imposed_temperature, stratify};
 use crate::weather::vents::VentConditions;
 use crate::weather::zone_conditions::ZoneConditions;
 
@@ -234,7 +234,7 @@ impl<S: Real> Conditions<S> {
             at.update(zone, now.row, &self.densities, air);
         }
         if coefficients.has_stratified {
-            self.stratify(plan, coefficients);
+            stratify(&mut self.surfaces, &self.zones, plan, coefficients);
         }
         for (at, path) in self.paths.iter_mut().zip(&coefficients.paths) {
             *at = path.conductance(now.row, &self.densities);
@@ -251,19 +251,6 @@ impl<S: Real> Conditions<S> {
             }
             self.sun.distribute(plan, coefficients, &mut self.surfaces);
             self.sun.absorb_in_panes(plan, &mut self.surfaces);
-        }
-    }
-
-    /// Air in front of the surfaces of stratified zones.
-    // Few buildings have any.
-    #[inline(never)]
-    fn stratify(&mut self, plan: &Plan, coefficients: &Coefficients<S>) {
-        for (zone, at) in plan.zones.iter().zip(&self.zones) {
-            for &surface in &zone.surfaces {
-                if let Some(level) = coefficients.surfaces[surface].level {
-                    self.surfaces[surface].air_shift = at.gradient.scale(level);
-                }
-            }
         }
     }
 

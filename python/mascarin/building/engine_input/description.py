@@ -26,7 +26,6 @@ from mascarin.building.engine_input.derived_outputs import describe_derived
 from mascarin.building.engine_input.heat_sources import describe_heat_source
 from mascarin.building.engine_input.humidity import describe_humidity
 from mascarin.building.engine_input.ids import Ids, Json, Positions, below, corners, each, fields_of
-from mascarin.building.engine_input.levels import levels
 from mascarin.building.engine_input.materials import describe_construction, describe_material
 from mascarin.building.engine_input.mesh import Mesh, choose
 from mascarin.building.engine_input.series_users import courses
@@ -46,6 +45,7 @@ from mascarin.building.parameters.parameter import parameters
 from mascarin.building.parts.air.air_path import AirPath
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.levels import levels
 from mascarin.building.parts.materials.text_law import TextSky, numbers_of
 from mascarin.building.parts.self_shading import obstructions
 from mascarin.building.parts.site import CloudFactor, CloudLayer, Site

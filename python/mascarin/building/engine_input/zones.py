@@ -6,7 +6,6 @@ from typing import Any
 
 from mascarin.building.engine_input.air import control_of, density_of, driven, schedule_of, set_point
 from mascarin.building.engine_input.ids import Ids, Json, Positions, deeper, fields_of
-from mascarin.building.engine_input.levels import levels
 from mascarin.building.geometry import closed_exchange_areas
 from mascarin.building.parts.air.zone import (
     FloorSun,
@@ -20,6 +19,7 @@ from mascarin.building.parts.air.zone import (
 )
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.surface import NoLongwave
+from mascarin.building.parts.levels import levels
 from mascarin.building.parts.materials.text_law import numbers_of
 from mascarin.building.parts.zone_surfaces import ZoneSurface, closed, floors, surface_names
 from mascarin.errors import InputError
