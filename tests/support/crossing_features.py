@@ -188,6 +188,9 @@ def _loads(tree: Json) -> None:
 
 
 def _stratified_air(tree: Json) -> None:
+    """A gradient in a room whose height follows from its floor."""
+    tree["surfaces"]["floor"] = {"construction": "wall", "area": 12, "tilt": 180,
+                                 "outside": {"adiabatic": True}, "inside": _side("room")}  # fmt: skip
     tree["zones"]["room"]["air_gradient"] = 1.5
 
 
