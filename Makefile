@@ -89,11 +89,13 @@ docs-axe:
 docs-links: $(BUILT)
 	$(PY) docs/site/build.py target/site --links
 
+# KERNEL is the folder of a program for one cell, beside which the engine is measured.
 # ENERGYPLUS is the program of version 25.2 (bench/energyplus.py says where to get it). Leave the machine alone meanwhile.
 bench: $(BUILT) $(HYPERFINE)
 	$(PY) bench/energyplus_lgi.py $(if $(ENERGYPLUS),--energyplus "$(ENERGYPLUS)") --write docs/speed.md
 	$(PY) bench/engine_speed.py --write docs/speed.md
 	$(PY) bench/engine_alone.py --write docs/speed.md
+	$(if $(KERNEL),$(PY) bench/kernel.py "$(KERNEL)" --write docs/speed.md)
 	$(PY) bench/through_python.py --hyperfine $(HYPERFINE) --write docs/speed.md
 	$(PY) bench/million.py --write docs/speed.md
 	$(PY) bench/linearly_implicit.py --write docs/speed.md

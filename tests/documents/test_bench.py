@@ -195,7 +195,7 @@ def test_every_table_of_the_page_on_speed_can_be_written(repository: Path) -> No
     makefile = (repository / "Makefile").read_text(encoding="utf-8")
     files = [repository / name for name in re.findall(r"bench/\w+\.py(?= .*--write docs/speed.md)", makefile)]
     names = [re.findall(r'publish\("([\w ]+)"', file.read_text(encoding="utf-8")) for file in files]
-    assert len(files) == 8
+    assert len(files) == 9
     assert all(len(found) == 1 for found in names), names
     for (name,) in names:
         changed = page.filled(text, name, "| new |")

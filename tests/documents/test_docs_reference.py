@@ -110,7 +110,7 @@ def test_every_kind_of_output_is_described_as_buildings_have_it() -> None:
     seen = set()
     files = [examples.FOLDER / "lgi" / "building.yaml", BUILDINGS / "600.yaml", BUILDINGS / "960.yaml"]
     plants = {"drying": {"relative_humidity": 0.7}, "humidifying": {"relative_humidity": 0.3}}
-    damp = mc.load(files[-1]).replace({"humidity": {"zones": {"back": plants}}})
+    damp = mc.load(files[-1]).replace({"humidity": {"zones": {"back": plants}}, "zones.back.air_gradient": 1})
     vents = {"flap": {"zone": "back", "area": 0.1, "elevation": 1, "pressure": "none"}}
     controls = {"night": {"zone": "back", "indoor": {"open": 24, "close": 22}}}
     derived = {"doubled": "2*back.air_temperature"}

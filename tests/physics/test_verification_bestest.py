@@ -260,8 +260,14 @@ def test_the_weather_is_recognized_by_its_numbers(data_dir: Path, tmp_path: Path
         read(renamed)
 
 
-def test_without_weather_the_message_names_the_source(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="725650TYCST"):
+def test_without_weather_the_message_names_the_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def missing(name: str) -> Path:
+        raise InputError(f"{name}: not downloaded")
+
+    monkeypatch.setattr("mascarin.verification.bestest.weather.data_file", missing)
+    with pytest.raises(InputError, match=r"comes with the standard's accompanying files.*not downloaded"):
         read(None)
     with pytest.raises(InputError, match="found no file"):
         read(tmp_path / "nothing.epw")

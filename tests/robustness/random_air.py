@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import random_materials
@@ -30,6 +31,7 @@ def zone(draw: Draw, schedules: Schedules, others: list[str]) -> Json:
         tree.setdefault("ventilation", {})[name] = flow | schedules.maybe("on", 0.5) | _density(draw)
     if draw.chance(0.2):
         tree["mixing_air_change"] = _mixing(draw, schedules)
+        tree["air_gradient"] = _gradient(tree["mixing_air_change"])
     tree |= _loads(draw, schedules)
     if draw.chance(0.25):
         tree["thermal_bridges"] = {"edge": _bridge(draw, others)}
@@ -73,6 +75,17 @@ def _mixing(draw: Draw, schedules: Schedules) -> Any:
         column: Json = {"column": "n_fan"} | ({"unit": "1/h"} if draw.chance(0.5) else {})
         return column | ({"factor": draw.number(0.0, 2.0)} if draw.chance(0.5) else {})
     return {"air_changes": draw.number(0.0, 40.0)} | schedules.maybe("on", 0.5)
+
+
+def _gradient(mixing: Any) -> Any:
+    """Stratified air where a fan moves air, without a draw of its own; other cases keep their numbers."""
+    if isinstance(mixing, Mapping) and "column" in mixing:
+        unit = {"unit": "K/m"} if "unit" in mixing else {}
+        return {"column": "P_kilo", "factor": mixing.get("factor", 1.0)} | unit
+    if isinstance(mixing, Mapping):
+        schedule = {key: mixing[key] for key in ("schedule",) if key in mixing}
+        return {"gradient": 0.2 * mixing["air_changes"] - 3.0} | schedule
+    return 0.1 * mixing
 
 
 def _density(draw: Draw) -> Json:

@@ -34,6 +34,7 @@ FORBIDDEN: Final[dict[tuple[str, str], str]] = {
         "boundaries and densities",
         "linear model",
     ): "infiltration of zone room, that a density, a schedule or a control changes is not linear",
+    ("stratified air", "linear model"): "stratified air",
     ("products", "linear model"): "phase change",
     ("own curves", "linear model"): "phase change",
     ("hysteresis", "linear model"): "phase change",

@@ -83,6 +83,13 @@ BuildingSurface:Detailed,Ground,Floor,Wall,Store,,Foundation,Pad,NoSun,NoWind,au
   4,3,0, 6,3,0, 6,0,0, 4,0,0;
 """
 
+_PATTERN = """
+RoomAirModelType,Model,Store,UserDefined,DIRECT;
+RoomAir:TemperaturePattern:UserDefined,Pattern,Store,Always,Numbers;
+Schedule:Constant,Numbers,Any,1;
+RoomAir:TemperaturePattern:ConstantGradient,Gradient,1,0,0,0,1.5;
+"""
+
 #: By feature: objects, and whether the building has it.
 OBJECTS: Final[dict[str, Objects]] = {
     "nothing": Objects("", lambda one: len(one.zones) == 2),
@@ -109,6 +116,7 @@ OBJECTS: Final[dict[str, Objects]] = {
     "heat sources": Objects(_MAT, lambda one: len(one.heat_sources) == 1),
     "humidity": Objects(_SKIN, lambda one: one.humidity is not None),
     "soil": Objects(_KIVA, None, "Foundation:Kiva"),
+    "stratified air": Objects(_PATTERN, None, "RoomAirModelType"),
 }
 #: Features that a model of EnergyPlus cannot have, with the reason.
 WITHOUT_OBJECTS: Final = {

@@ -341,6 +341,8 @@ FREEDOM: dict[str, Any] = {
     "air_paths.hatch.density": "zone",
     "zones.room.mixing_air_change": {"air_changes": 10, "schedule": "day"},
     "zones.attic.mixing_air_change": {"column": "T_out", "factor": 0.5},
+    "zones.room.air_gradient": {"gradient": 1.5, "schedule": "day"},
+    "zones.attic.air_gradient": {"column": "T_out", "factor": 0.05},
     "surfaces.floor.outside": {"heat_flux": {"flux": 5, "schedule": "day"}},
     "surfaces.south.outside": {"heat_flux": {"column": "T_out", "factor": 0.5}},
     "surfaces.west.inside.convection": "beausoleil_morrison",

@@ -187,6 +187,13 @@ def _loads(tree: Json) -> None:
     tree["zones"]["room"] |= {"heating": {"setpoint": 20}, "cooling": {"setpoint": 25, "capacity": 1500}}
 
 
+def _stratified_air(tree: Json) -> None:
+    """A gradient in a room whose height follows from its floor."""
+    tree["surfaces"]["floor"] = {"construction": "wall", "area": 12, "tilt": 180,
+                                 "outside": {"adiabatic": True}, "inside": _side("room")}  # fmt: skip
+    tree["zones"]["room"]["air_gradient"] = 1.5
+
+
 def _bridges(tree: Json) -> None:
     tree["dimensions"] = {"areas": "external", "bridges": "external"}
     wall = next(name for name, part in tree["surfaces"].items() if "outdoors" in part["outside"])
@@ -328,6 +335,7 @@ FEATURES: Final[dict[str, Callable[[Json], None]]] = {
     "openings": _openings,
     "blinds": _blinds,
     "loads": _loads,
+    "stratified air": _stratified_air,
     "thermal bridges": _bridges,
     "interior windows": _interior_windows,
     "measured columns": _measured_columns,

@@ -32,6 +32,7 @@ _UNITS: Final = {
     "water_flow": "kg/s",
     "flow": "m3/s",
     "air_change": "1/h",
+    "temperature_gradient": "K/m",
     "vapour": "kg/s",
     "rain": "mm/h",
     "relative_humidity": "-",

@@ -70,7 +70,7 @@ class Wall:
 
     @property
     def _parts(self) -> list[LayerText]:
-        return layers_of(self.layers, "--layers")
+        return layers_of(self.layers, "layers of the wall")
 
     def outputs(self) -> dict[str, str]:
         """Column of each sensor -> output of the building.

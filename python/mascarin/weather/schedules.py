@@ -203,6 +203,7 @@ LIMITS_OF_COURSES: Final = {
     "heat_flux": (-1e5, 1e5),
     "flow": (0.0, 1000.0),
     "air_change": (0.0, 1000.0),
+    "temperature_gradient": (-20.0, 20.0),
     "vapour": (0.0, 10.0),
     "water_flow": (0.0, 1000.0),
     "rain": (0.0, 1000.0),

@@ -113,7 +113,7 @@ def test_rooms_of_a_house_share_walls() -> None:
         ("new room 4,5x3x2", "Write decimals with a point"),
         ("new room 400x3x2", "a length of 400 m; expected 0.5 to 100 m"),
         ("new room 4x3x2.8 --place paris", "--place: found 'paris'; expected one of saint-denis, tampa"),
-        ("new room 4x3x2.8 --walls ''", "--walls: found no layer"),
+        ("new room 4x3x2.8 --walls ''", "--walls: found an empty text"),
         ("new room 4x3x2.8 --ceiling plasterboard+", "found an empty layer"),
         ("new room 4x3x2.8 --gap ventilated", "without a ceiling below it"),
         ("new room 4x3x2.8 --ceiling RT25HC", "without a thickness; expected one, such as 'RT25HC 10mm'"),

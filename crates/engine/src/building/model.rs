@@ -198,9 +198,11 @@ impl Parts {
         let of_linear_wall = matches!(plan.surfaces[surface].role, SideRole::Zone { .. })
             || !plan.walls[surface.wall()].nonlinear;
         self.nonlinear_balances |= plan.walls[surface.wall()].condensed_in_zone && !of_linear_wall;
+        // Where the air is stratified, the line of a law has an offset that changes.
+        let shifted = coefficients.surfaces[surface].level.is_some();
         match convection_law(coefficients, surface) {
-            Some(law) if law.constant().is_some() => {}
-            Some(law) if law.straight() => {
+            Some(law) if law.constant().is_some() && !shifted => {}
+            Some(law) if law.straight() && !shifted => {
                 self.surfaces.windy.push(surface);
                 self.wind_changes_balances |= of_linear_wall;
             }

@@ -11,9 +11,9 @@ use super::description::{
     Gain, Gap, Glazing, HeatExchange, HeatFlux, HeatSource, HeatingMeans, Humidity, HumidityControl,
     HumiditySetPoint, IdealLoad, Infiltration, Layer, Material, MeltingCurve, Mixing, Opening,
     OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PublishedLaw, Sensor, SetPoint, Side, Site, Sky,
-    Sorption, SunShares, Surface, TextLaw, ThermalBridge, Throttle, UnitFlow, VapourGain, Vent, VentControl,
-    Ventilation, VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave,
-    ZoneSun,
+    Sorption, Stratification, SunShares, Surface, TextLaw, ThermalBridge, Throttle, UnitFlow, VapourGain,
+    Vent, VentControl, Ventilation, VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone,
+    ZoneHumidity, ZoneLongwave, ZoneSun,
 };
 
 /// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
@@ -177,9 +177,10 @@ walk!(Angular { transmittance_scale, absorptance_scale }
     plain { angles, transmittance, absorptance, diffuse_transmittance, diffuse_absorptance, back_transmittance,
         back_absorptance });
 
-walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, mixing, heating, cooling, setpoint_radiant_share }
+walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, mixing, stratification, heating, cooling, setpoint_radiant_share }
     plain { name, view_weights });
 walk!(Mixing { air_changes } plain { schedule });
+walk!(Stratification { gradient } plain { schedule, height });
 walk!(Infiltration { constant, temperature, wind, leakage, law, density } plain { schedule, control });
 walk!(FlowDensity by variant {
     Outdoors {} plain {},
@@ -229,7 +230,7 @@ walk!(Surface { area, openings, frame, cavity_height, tilt, azimuth, outside, in
     plain { name, construction, vertices, soil });
 walk!(FrameShare { fraction } plain { is_frame });
 walk!(Side { facing, convection, heat_flux, emissivity, absorptance, area_factor, sky_view, height, longwave }
-    plain { irradiance, behind_obstacles, exposure, shaded_by, own_shades, outline });
+    plain { irradiance, behind_obstacles, exposure, shaded_by, own_shades, outline, level });
 walk!(HeatFlux { flux } plain { schedule });
 walk!(HeatSource { means, thermostat } plain { name, surface, layer, control });
 walk!(HeatingMeans by variant {

@@ -110,6 +110,12 @@ fn require_linear_zones(
                 "keep only its constant part",
             );
         }
+        if zone.gradient.is_some() {
+            return refuse(
+                &format!("the stratified air of zone {}", definition.name),
+                "remove `air_gradient`",
+            );
+        }
         if zone.gains.iter().any(Gain::of_people) {
             return refuse(
                 &format!("heat of people in zone {}", definition.name),

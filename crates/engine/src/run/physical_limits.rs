@@ -297,6 +297,9 @@ fn supplied<S: Real>(stepper: &Stepper<'_, S>, state: &State<S>) -> [S::Mask; 2]
     for zone in &weather.conditions.zones {
         heat = heat.max(zone.convective).max(zone.radiant);
         cooling = cooling.min(zone.convective).min(zone.radiant);
+        // Air that is stated to be warmer above than below carries heat by itself.
+        heat = heat.max(zone.gradient.abs());
+        cooling = cooling.min(-zone.gradient.abs());
     }
     let laws = weather.index.beside.then_some(&weather.index.imposed).into_iter().flatten();
     let boundary = |surface: SideId| &stepper.model.coefficients.surfaces[surface].boundary;

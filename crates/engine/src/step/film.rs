@@ -19,7 +19,8 @@ pub(crate) fn film<S: Real>(
     air: S,
 ) -> S {
     let Some(law) = model.convection(surface) else { return S::zero() };
-    let (difference, least) = (temperature - air, S::constant(LEAST));
+    let shift = conditions.surfaces[surface].air_shift;
+    let (difference, least) = (temperature - air - shift, S::constant(LEAST));
     let difference = S::select(difference.abs().lt(least), least, difference);
     law.flux(difference, &conditions.surfaces[surface].forced).flux / difference
         * model.coefficients.surfaces[surface].area_factor

@@ -117,7 +117,7 @@ impl<S: Real> Linearisation<S> {
             };
             if let Some(convection) = &surface.convection {
                 let difference = iterate.surfaces[index] - air;
-                let flux = convection.tangent_flux(difference, &at.forced);
+                let flux = convection.tangent_flux(difference - at.air_shift, &at.forced);
                 let (flux, slope) = (flux.flux * surface.area_factor, flux.slope * surface.area_factor);
                 self.laws.surfaces[index].convection = Line::tangent(flux, slope, difference);
             }

@@ -153,9 +153,10 @@ impl<S: Real> NonlinearLaws<S> {
             }
         }
         for &(surface, zone) in &self.interior {
-            let after = new.surfaces[surface] - new.air[zone];
+            let shift = stage.conditions.surfaces[surface].air_shift;
+            let after = new.surfaces[surface] - new.air[zone] - shift;
             if (!far.lt(after * after)).any() {
-                let before = old.surfaces[surface] - old.air[zone];
+                let before = old.surfaces[surface] - old.air[zone] - shift;
                 small = small & self.limit.accepts_convection(before, after);
             }
         }

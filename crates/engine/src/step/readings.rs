@@ -91,6 +91,12 @@ impl<S: Real> Readings<'_, S> {
         self.weather.incident_beam(surface)
     }
 
+    /// Air of a zone at a height from its middle, as a part of the height of the zone [degC].
+    pub(crate) fn air_at(&self, state: &State<S>, zone: usize, part: f64) -> S {
+        let gradient = self.weather.conditions.zones[zone].gradient;
+        state.air[zone] + gradient.scale(part * self.model.coefficients.zones[zone].height)
+    }
+
     /// Altitude of the sun, negative below the horizon, and its azimuth clockwise from north, at the end of the step [deg].
     pub(crate) fn sun_position(&self) -> [f64; 2] {
         position(self.weather.conditions.sun.direction)

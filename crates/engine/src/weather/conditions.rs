@@ -16,7 +16,7 @@ pub use crate::weather::instant::{Instant, Weather};
 use crate::weather::mechanical_air::MechanicalConditions;
 pub use crate::weather::sun::SolarConditions;
 pub use crate::weather::surface::SurfaceConditions;
-use crate::weather::surface::{driven_outside, forced, imposed_temperature};
+use crate::weather::surface::{driven_outside, forced, imposed_temperature, stratify};
 use crate::weather::vents::VentConditions;
 use crate::weather::zone_conditions::ZoneConditions;
 
@@ -71,7 +71,7 @@ impl<S: Real> Conditions<S> {
         };
         let surfaces = coefficients.surfaces.iter().map(|surface| {
             let forced = surface.convection.as_ref().map_or([zero; 4], SurfaceConvection::calm);
-            SurfaceConditions { solar: zero, longwave: zero, temperature: zero, forced }
+            SurfaceConditions { solar: zero, longwave: zero, temperature: zero, air_shift: zero, forced }
         });
         Self {
             surfaces: surfaces.collect(),
@@ -117,6 +117,7 @@ impl<S: Real> Conditions<S> {
             at.solar = a.solar + (b.solar - a.solar) * of_sun;
             at.longwave = line(a.longwave, b.longwave);
             at.temperature = line(a.temperature, b.temperature);
+            at.air_shift = line(a.air_shift, b.air_shift);
             for k in 0..2 {
                 at.forced[k] = rate(a.forced[k], b.forced[k]);
             }
@@ -231,6 +232,9 @@ impl<S: Real> Conditions<S> {
         for (z, (at, zone)) in self.zones.iter_mut().zip(&coefficients.zones).enumerate() {
             let air = self.airs.get(z).copied().unwrap_or_else(S::zero);
             at.update(zone, now.row, &self.densities, air);
+        }
+        if coefficients.has_stratified {
+            stratify(&mut self.surfaces, &self.zones, plan, coefficients);
         }
         for (at, path) in self.paths.iter_mut().zip(&coefficients.paths) {
             *at = path.conductance(now.row, &self.densities);

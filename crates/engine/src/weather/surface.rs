@@ -1,11 +1,13 @@
 //! What acts on a single surface: absorbed radiation, the temperature beside it and the wind on it.
 
 use crate::building::coefficients::{Boundary, Coefficients, Imposed, Outdoors};
-use crate::building::ids::SideId;
+use crate::building::ids::{BySide, SideId};
+use crate::building::plan::Plan;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::convection::wind::angle_of_cosine;
 use crate::physics::convection::{Driven, Surroundings};
 use crate::weather::instant::Instant;
+use crate::weather::zone_conditions::ZoneConditions;
 
 /// A surface is leeward when the cosine between its normal and the direction that the wind comes from is below this. A wind along
 /// the surface counts as windward: its cosine is zero but for round-off, so the limit lies 6e-8 deg behind the surface. (Walton
@@ -23,6 +25,8 @@ pub struct SurfaceConditions<S: Real> {
     pub longwave: S,
     /// Temperature of the air, or the imposed temperature [degC].
     pub temperature: S,
+    /// Air in front of it less the mean of its zone [K].
+    pub air_shift: S,
     /// The parts of the surface heat transfer coefficient that depend on the wind and on what is around the surface.
     pub forced: Driven<S>,
 }
@@ -32,6 +36,24 @@ impl<S: Real> SurfaceConditions<S> {
     pub(crate) fn impose(&mut self, [heat, coefficient]: [Option<S>; 2]) {
         self.longwave = heat.unwrap_or(self.longwave);
         self.forced = coefficient.map_or(self.forced, |coefficient| [coefficient; 4]);
+    }
+}
+
+/// Sets the air in front of the surfaces of stratified zones.
+// Few buildings have any.
+#[inline(never)]
+pub(super) fn stratify<S: Real>(
+    surfaces: &mut BySide<SurfaceConditions<S>>,
+    zones: &[ZoneConditions<S>],
+    plan: &Plan,
+    coefficients: &Coefficients<S>,
+) {
+    for (zone, at) in plan.zones.iter().zip(zones) {
+        for &surface in &zone.surfaces {
+            if let Some(level) = coefficients.surfaces[surface].level {
+                surfaces[surface].air_shift = at.gradient.scale(level);
+            }
+        }
     }
 }
 

@@ -22,6 +22,8 @@ pub struct ZoneConditions<S> {
     infiltrated_capacity: Option<S>,
     /// Air that moves within the zone [1/h]; none: no fan moves any.
     mixing: Option<S>,
+    /// Vertical gradient of the air temperature [K/m].
+    pub(crate) gradient: S,
     /// Open fraction of each opening [-].
     open: Vec<S>,
 }
@@ -38,6 +40,7 @@ impl<S: Real> ZoneConditions<S> {
             controlled: vec![zero; zone.ventilation_controls.iter().flatten().count()],
             infiltrated_capacity: zone.infiltrated_capacity.as_ref().map(|_| zero),
             mixing: zone.mixing.as_ref().map(|_| zero),
+            gradient: zero,
             open: vec![zero; zone.openings.len()],
         }
     }
@@ -62,6 +65,7 @@ impl<S: Real> ZoneConditions<S> {
         if let (Some(at), Some(a), Some(b)) = (&mut self.mixing, first.mixing, second.mixing) {
             *at = line(a, b).max(S::zero());
         }
+        self.gradient = line(first.gradient, second.gradient);
         for (at, (&a, &b)) in self.open.iter_mut().zip(first.open.iter().zip(&second.open)) {
             *at = line(a, b).max(S::zero()).min(S::one());
         }
@@ -95,6 +99,9 @@ impl<S: Real> ZoneConditions<S> {
         }
         if let Some((air_changes, schedule)) = zone.mixing {
             self.mixing = Some(scheduled(air_changes, schedule, row));
+        }
+        if let Some((gradient, schedule)) = zone.gradient {
+            self.gradient = scheduled(gradient, schedule, row);
         }
         for (open, opening) in self.open.iter_mut().zip(&zone.openings) {
             *open = opening.open_fraction(row);

@@ -45,6 +45,7 @@ from mascarin.building.parameters.parameter import parameters
 from mascarin.building.parts.air.air_path import AirPath
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.levels import levels
 from mascarin.building.parts.materials.text_law import TextSky, numbers_of
 from mascarin.building.parts.self_shading import obstructions
 from mascarin.building.parts.site import CloudFactor, CloudLayer, Site
@@ -128,7 +129,7 @@ def _describe(
         **_air(building, ids, positions),
         "openings": each(building.openings, "openings", ids, partial(describe_opening, building, positions)),
         **describe_vents(building, positions, ids),
-        "surfaces": _obstructed(
+        "surfaces": _placed(
             building,
             [
                 *each(
@@ -207,6 +208,11 @@ def _air(building: Description, ids: Mapping[str, int], positions: Positions) ->
     }
 
 
+def _placed(building: Description, written: list[Json]) -> list[Json]:
+    """Surfaces, windows and frames with what stands in front of them, and their heights in stratified air."""
+    return _levelled(building, _obstructed(building, written))
+
+
 def _obstructed(building: Description, written: list[Json]) -> list[Json]:
     """Surfaces, windows and frames with the surfaces in front of their sides."""
     indices = {name: index for index, name in enumerate(building.surfaces)}
@@ -216,6 +222,20 @@ def _obstructed(building: Description, written: list[Json]) -> list[Json]:
         for side in ("outside", "inside"):
             if obstacles := in_front.get((name, side)):
                 part[side]["shaded_by"] = [indices[other] for other in obstacles]
+    return written
+
+
+def _levelled(building: Description, written: list[Json]) -> list[Json]:
+    """The same with the heights of surfaces in stratified air."""
+    for zone, part in building.zones.items():
+        if part.air_gradient is None:
+            continue
+        names = [*building.surfaces, *building.windows]
+        for item, level in zip(building.connections.of(zone), levels(building, zone)[0], strict=True):
+            written[names.index(item.name)][item.side]["level"] = level
+            if item.window is not None and item.name in framed(building):
+                frame = len(names) + list(framed(building)).index(item.name)
+                written[frame][item.side]["level"] = level
     return written
 
 

@@ -27,6 +27,8 @@ def schedule_uses(building: Description) -> Iterator[Use]:
             yield zone.infiltration.schedule, (*location, "infiltration", "schedule"), "fraction"
         if zone.mixing_air_change is not None and zone.mixing_air_change.schedule is not None:
             yield zone.mixing_air_change.schedule, (*location, "mixing_air_change", "schedule"), "fraction"
+        if zone.air_gradient is not None and zone.air_gradient.schedule is not None:
+            yield zone.air_gradient.schedule, (*location, "air_gradient", "schedule"), "fraction"
         for which, loads in zone.loads.items():
             if loads.setpoint.schedule is not None:
                 yield loads.setpoint.schedule, (*location, which, "setpoint", "schedule"), "temperature"
@@ -99,6 +101,8 @@ def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[
                 yield gain.course, (*location, "gains", key, "column")
         if zone.mixing_air_change is not None and zone.mixing_air_change.course is not None:
             yield zone.mixing_air_change.course, (*location, "mixing_air_change", "column")
+        if zone.air_gradient is not None and zone.air_gradient.course is not None:
+            yield zone.air_gradient.course, (*location, "air_gradient", "column")
         for which, loads in zone.loads.items():
             if loads.setpoint.column is not None:
                 yield temperature_course(loads.setpoint.column), (*location, which, "setpoint", "column")

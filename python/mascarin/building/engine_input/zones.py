@@ -19,6 +19,7 @@ from mascarin.building.parts.air.zone import (
 )
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.surface import NoLongwave
+from mascarin.building.parts.levels import levels
 from mascarin.building.parts.materials.text_law import numbers_of
 from mascarin.building.parts.zone_surfaces import ZoneSurface, closed, floors, surface_names
 from mascarin.errors import InputError
@@ -51,6 +52,7 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
         "gains": gains,
         "ventilation": ventilation,
         **_mixing(zone, positions, ids),
+        **_stratification(building, name, positions, ids),
         **loads,
         "volume": ids("volume"),
         "capacity_factor": ids("capacity_factor"),
@@ -70,6 +72,14 @@ def _mixing(zone: Zone, positions: Positions, ids: Ids) -> Json:
         return {}
     written = driven(zone.mixing_air_change, "air_changes", positions, deeper(ids, "mixing_air_change"))
     return {"mixing": written}
+
+
+def _stratification(building: Description, name: str, positions: Positions, ids: Ids) -> Json:
+    air = building.zones[name].air_gradient
+    if air is None:
+        return {}
+    written = driven(air, "gradient", positions, deeper(ids, "air_gradient"))
+    return {"stratification": written | {"height": levels(building, name)[1]}}
 
 
 def _infiltration(building: Description, positions: Positions, part: Infiltration, ids: Ids) -> Json:

@@ -193,6 +193,7 @@ class _Document:
         yaml = YAML(typ="safe", pure=True)
         self.scalars = yaml.constructor
         self.most_values = max(MOST_VALUES, len(text))
+        plain: Any = None
         try:
             root = compose(yaml, text)
             # A key without a value removes that of the base.

@@ -93,6 +93,7 @@ _ZONES: Final[Mapping[str, Callable[[Description, str], bool]]] = {
     "cooled_zone": lambda building, zone: "cooling" in building.zones[zone].loads,
     "conditioned_zone": lambda building, zone: bool(building.zones[zone].loads),
     "sunlit_zone": lambda building, zone: zone in _lit_zones(building),
+    "stratified_zone": lambda building, zone: building.zones[zone].air_gradient is not None,
     "humid_zone": lambda building, zone: _has_humidity(building, zone),
     "dried_zone": lambda building, zone: _has_humidity(building, zone, "drying"),
     "humidified_zone": lambda building, zone: _has_humidity(building, zone, "humidifying"),

@@ -53,6 +53,15 @@ Ventilation = Annotated[
         Limits(at_least=0, at_most=1000),
     ),
 ]
+AirGradient = Annotated[
+    Number,
+    Quantity(
+        "K/m",
+        "Vertical gradient of the air temperature of the zone, about its mean at middle height",
+        Percent(50, "heaters, openings and sun change it; measured at two heights it is known better"),
+        Limits(at_least=-20, at_most=20),
+    ),
+]
 MixingAirChange = Annotated[
     Number,
     Quantity(

@@ -53,6 +53,8 @@ pub struct Coefficients<S> {
     pub mechanical_air: MechanicalAir<S>,
     /// Air of the site, where flows are volumes of air of a density that changes.
     pub(crate) densities: Option<SiteAir<S>>,
+    /// Whether the air of a zone is stratified.
+    pub(crate) has_stratified: bool,
     /// Whether people give heat or vapour by the temperature of the air.
     pub(crate) has_people: bool,
     /// Openings of the pressure network, and controls of openings.
@@ -99,6 +101,7 @@ impl<S: Real> Coefficients<S> {
         let has_people = zones.iter().flat_map(|zone| &zone.gains).any(Gain::of_people)
             || humidity.iter().flat_map(|humidity| &humidity.zones).any(VapourZone::has_people);
         Self {
+            has_stratified: zones.iter().any(|zone| zone.gradient.is_some()),
             has_people,
             heat_sources,
             humidity,

@@ -41,6 +41,8 @@ pub struct SurfaceCoefficients<S> {
     pub boundary: Boundary<S>,
     /// Which of sun, sky and wind reach it.
     pub exposure: Exposure,
+    /// Height of its middle above that of its zone [m]; none: the air of its zone has one temperature.
+    pub(crate) level: Option<f64>,
 }
 
 /// What drives a surface that is in contact with no zone.
@@ -124,6 +126,12 @@ impl<S: Real> SurfaceCoefficients<S> {
             irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),
             boundary,
             exposure: side.exposure,
+            level: match side.facing {
+                Facing::Zone { zone } => {
+                    plan.description.zones[zone].stratification.as_ref().map(|_| side.level)
+                }
+                _ => None,
+            },
         }
     }
 }

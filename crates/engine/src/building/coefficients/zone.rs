@@ -52,6 +52,10 @@ pub struct ZoneCoefficients<S> {
     pub exchange_sums: Vec<S>,
     /// Law of emission.
     pub emission: Emission<S>,
+    /// Gradient of the air temperature [K/m] and its schedule; none: one temperature.
+    pub(crate) gradient: Option<(S, Schedule)>,
+    /// From floor to ceiling, where the air is stratified [m].
+    pub(crate) height: f64,
     /// Areas of its surfaces [m2].
     pub areas: Vec<S>,
     /// Heat from people, light and machines.
@@ -129,6 +133,11 @@ impl<S: Real> ZoneCoefficients<S> {
             capacity: air_capacity * values.get(definition.capacity_factor),
             air_capacity,
             infiltration,
+            gradient: definition
+                .stratification
+                .as_ref()
+                .map(|air| (values.get(air.gradient), Schedule::new(air.schedule))),
+            height: definition.stratification.as_ref().map_or(0.0, |air| air.height),
             leakage: driven_leakage,
             infiltrated_capacity: changing.then(infiltrated),
             infiltration_control: *control,

@@ -46,5 +46,6 @@ pub use site::{Clouds, Site, Sky, WindProfile};
 pub use surface::{Exposure, Facing, FrameShare, HeatFlux, OutdoorLongwave, Sensor, Side, Soil, Surface};
 pub use vent::{Band, ChannelBand, Vent, VentControl, WindOnVent, WindPressure};
 pub use zone::{
-    Gain, IdealLoad, Infiltration, Mixing, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave, ZoneSun,
+    Gain, IdealLoad, Infiltration, Mixing, SetPoint, Stratification, SunShares, Ventilation, Zone,
+    ZoneLongwave, ZoneSun,
 };

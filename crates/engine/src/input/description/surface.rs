@@ -117,6 +117,9 @@ pub struct Side {
     /// Corners of the side where its wall has no vertices, in coordinates that its own shades share alone [m].
     #[serde(default)]
     pub outline: Vec<[f64; 3]>,
+    /// Height of its middle above the middle of its zone [m], where the air of the zone is stratified.
+    #[serde(default)]
+    pub level: f64,
 }
 
 /// A given heat flow density.

@@ -42,6 +42,9 @@ pub struct Zone {
     /// Air that a fan moves within the zone. None: none.
     #[serde(default)]
     pub mixing: Option<Mixing>,
+    /// Air that is warmer above than below. None: one temperature.
+    #[serde(default)]
+    pub stratification: Option<Stratification>,
     /// Ideal heating.
     #[serde(default)]
     pub heating: Option<IdealLoad>,
@@ -51,6 +54,19 @@ pub struct Zone {
     /// Share of the mean radiant temperature in the temperature that set points of heating and cooling hold [-]. None: the air alone.
     #[serde(default)]
     pub setpoint_radiant_share: Option<ParamId>,
+}
+
+/// A vertical gradient of the air temperature of a zone, about its mean at middle height.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stratification {
+    /// Gradient, upwards [K/m]; where a channel gives it, what that is multiplied by.
+    pub gradient: ParamId,
+    /// Index into [`Description::channels`](super::Description::channels): what it is multiplied by. None: one.
+    #[serde(default)]
+    pub schedule: Option<usize>,
+    /// From floor to ceiling [m].
+    pub height: f64,
 }
 
 /// Infiltration of outdoor air.

@@ -41,6 +41,8 @@ pub(super) struct Laws<S> {
     forced_of_text: Option<[Vec<S>; 2]>,
     /// Temperature of the air in front of each surface [degC].
     pub(super) air: Vec<S>,
+    /// Air in front of each surface less the mean of its zone [K]; none where no air is stratified.
+    shift: Option<Vec<S>>,
     /// Surfaces whose heat transfer coefficient depends on the wind alone: place, convective area over plane area.
     by_wind: Vec<(usize, S)>,
     nonlinear: Vec<Group<S>>,
@@ -62,6 +64,7 @@ impl<S: Real> Laws<S> {
             forced: [zeros(), zeros()],
             forced_of_text: None,
             air: zeros(),
+            shift: None,
             by_wind: Vec::new(),
             nonlinear: Vec::new(),
             fourth_power: Vec::new(),
@@ -115,9 +118,9 @@ impl<S: Real> Laws<S> {
             |surface: SideId| numbers.surfaces[surface].convection.as_ref().filter(|_| acts(surface));
         for i in 0..self.count {
             let surface = self.surface(i);
-            if convection(surface)
-                .is_some_and(|convection| convection.constant().is_none() && convection.straight())
-            {
+            let shifted = numbers.surfaces[surface].level.is_some();
+            let by_wind = |law: &SurfaceConvection<S>| law.constant().is_none() && law.straight();
+            if convection(surface).is_some_and(by_wind) && !shifted {
                 self.by_wind.push((i, numbers.surfaces[surface].area_factor));
             }
             if !acts(surface) {
@@ -127,7 +130,13 @@ impl<S: Real> Laws<S> {
         if self.surfaces().any(|surface| convection(surface).is_some_and(SurfaceConvection::is_text)) {
             self.forced_of_text = Some(self.forced.clone());
         }
-        let nonlinear = |surface: SideId| convection(surface).filter(|convection| !convection.straight());
+        let shifted = |surface: SideId| numbers.surfaces[surface].level.is_some();
+        if self.surfaces().any(|surface| shifted(surface) && convection(surface).is_some()) {
+            self.shift = Some(vec![S::zero(); self.air.len()]);
+        }
+        // The line of a law in stratified air has an offset that changes, as that of a nonlinear law.
+        let nonlinear =
+            |surface: SideId| convection(surface).filter(|law| !law.straight() || shifted(surface));
         let padded: Vec<_> = self.places.iter().map(|&place| SideId::from_index(place)).collect();
         let (mut groups, mut fourth_power) = (Vec::new(), Vec::new());
         for (chunk, surfaces) in padded.chunks(S::CHUNK).enumerate() {
@@ -192,6 +201,11 @@ impl<S: Real> Laws<S> {
                 [.., *third, *fourth] = conditions.surfaces[SideId::from_index(place)].forced;
             }
         }
+        if let Some(shifts) = &mut self.shift {
+            for (&place, shift) in places.iter().zip(shifts) {
+                *shift = conditions.surfaces[SideId::from_index(place)].air_shift;
+            }
+        }
         for &(i, factor) in &self.by_wind {
             self.convection[1][i] = self.forced[0][i] * factor;
         }
@@ -211,10 +225,14 @@ impl<S: Real> Laws<S> {
                 None => [V::zero(); 2],
             };
             let forced = [part!(first, start), part!(second, start), third, fourth];
+            let to_air = match &self.shift {
+                Some(shift) => difference - part!(shift, start),
+                None => difference,
+            };
             let flux = group.convection.flux_of(
                 #[inline(always)]
                 |numbers| V::load(numbers),
-                difference,
+                to_air,
                 &forced,
             );
             let factor = V::load(&group.factor);

@@ -98,6 +98,16 @@ outputs! {
         Row::mean(Of::HumidifiedZone, "ZONE.latent_heating_load", "W", "Latent heating").not_negative(),
         |at| at.step.latent(zone, true);
 
+    /// Temperature of the air at the floor, where it is stratified.
+    ZoneFloorAir { zone } =
+        Row::state(Of::StratifiedZone, "ZONE.floor_air_temperature", "degC", "Air temperature at the floor"),
+        |at| at.step.air_at(at.state, zone, -0.5);
+
+    /// Temperature of the air at the ceiling, where it is stratified.
+    ZoneCeilingAir { zone } =
+        Row::state(Of::StratifiedZone, "ZONE.ceiling_air_temperature", "degC", "Air temperature at the ceiling"),
+        |at| at.step.air_at(at.state, zone, 0.5);
+
     /// Solar radiation that enters through all windows of the zone.
     ZoneTransmittedSolar { zone } =
         Row::mean(Of::SunlitZone, "ZONE.transmitted_solar", "W", "Transmitted solar radiation"),

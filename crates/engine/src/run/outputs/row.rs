@@ -120,6 +120,8 @@ pub enum Of {
     ConditionedZone,
     /// Zones with windows.
     SunlitZone,
+    /// Zones with stratified air.
+    StratifiedZone,
     /// Zones of a building with humidity.
     HumidZone,
     /// Zones with ideal drying.
@@ -173,6 +175,7 @@ impl Of {
             Self::CooledZone => "zones with `cooling`",
             Self::ConditionedZone => "zones with `heating` or `cooling`",
             Self::SunlitZone => "zones with windows",
+            Self::StratifiedZone => "zones with `air_gradient`",
             Self::HumidZone => "every zone of a building with `humidity`",
             Self::DriedZone => "zones with `drying` in `humidity`",
             Self::HumidifiedZone => "zones with `humidifying` in `humidity`",
@@ -205,9 +208,12 @@ impl Of {
         let is_zone = at.zone < plan.zones.len();
         let is_surface = at.surface < plan.walls.len();
         match self {
-            Self::Zone | Self::HeatedZone | Self::CooledZone | Self::ConditionedZone | Self::SunlitZone => {
-                is_zone
-            }
+            Self::Zone
+            | Self::HeatedZone
+            | Self::CooledZone
+            | Self::ConditionedZone
+            | Self::SunlitZone
+            | Self::StratifiedZone => is_zone,
             Self::HumidZone | Self::DriedZone | Self::HumidifiedZone => plan.humidity.is_some() && is_zone,
             Self::Side | Self::SunlitSide | Self::RadiatingSide | Self::ConvectiveSide => {
                 is_surface && at.side < 2
@@ -251,6 +257,7 @@ impl Of {
             | Self::CooledZone
             | Self::ConditionedZone
             | Self::SunlitZone
+            | Self::StratifiedZone
             | Self::HumidZone
             | Self::DriedZone
             | Self::HumidifiedZone => format!("zone {}", description.zones[at.zone].name),

@@ -212,6 +212,7 @@ impl Builder {
             view_weights: Vec::new(),
             sun: ZoneSun::Area,
             solar_to_air: None,
+            stratification: None,
             setpoint_radiant_share: None,
             gains: Vec::new(),
             ventilation: Vec::new(),
@@ -308,6 +309,7 @@ pub fn facing(facing: Facing, convection: Option<Convection>) -> Side {
         outline: Vec::new(),
         exposure: Exposure::default(),
         shaded_by: Vec::new(),
+        level: 0.0,
     }
 }
 

@@ -161,6 +161,27 @@ class MixingAir(Driven):
     )
 
 
+class StratifiedAir(Driven):
+    """Air that is warmer above than below, as convection at the surfaces of a zone sees it.
+
+    Examples
+    --------
+    >>> StratifiedAir(gradient=1.5)
+    StratifiedAir(gradient=1.5 K/m)
+    >>> StratifiedAir(column="dT_dz").course.name
+    'dT_dz [K/m]'
+    """
+
+    NUMBER: ClassVar = "gradient"
+    KIND: ClassVar = "temperature_gradient"
+
+    gradient: q.AirGradient | None = None
+    unit: Literal["K/m"] | None = Field(None, description="Unit of the column; none: K/m")
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the gradient; none: always 1"
+    )
+
+
 class IdealLoads(Part):
     """Ideal heating or cooling: it holds the air, or an operative temperature, without losses and delay.
 
@@ -371,6 +392,11 @@ class Zone(Part):
         None,
         description="Air that a fan moves within the zone: a number [1/h], or a part with a schedule or "
         "column; none: no air",
+    )
+    air_gradient: Annotated[StratifiedAir, Shorthand(number="gradient")] | None = Field(
+        None,
+        description="Air that is warmer above than below: a number [K/m], or a part with a schedule or "
+        "column; none: one temperature",
     )
     heating: IdealLoads | None = Field(None, description="Ideal heating; none: no heating")
     cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: no cooling")

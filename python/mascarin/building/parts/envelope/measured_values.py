@@ -55,8 +55,8 @@ class Driven(Part):
 
     @classmethod
     def _usual_unit(cls) -> str:
-        units = {"power": "W", "heat_flux": "W/m2", "air_change": "1/h", "water_flow": "kg/s"}
-        return units.get(cls.KIND, "m3/s")
+        usual = {"power": "W", "heat_flux": "W/m2", "air_change": "1/h", "water_flow": "kg/s"}
+        return (usual | {"temperature_gradient": "K/m"}).get(cls.KIND, "m3/s")
 
     @property
     def number(self) -> float:
