@@ -51,13 +51,13 @@ def kernel_times(program: Path) -> dict[str, float]:
     return {"run": times["scalar"], "member": times["V8"]}
 
 
-def in_turns(program: Path, rounds: int, given: argparse.Namespace) -> dict[str, dict[str, float]]:
+def in_turns(program: Path, rounds: int, options: argparse.Namespace) -> dict[str, dict[str, float]]:
     """Shortest times of the kernel and of each model of the engine over some rounds. [s]"""
     rows: dict[str, list[dict[str, float]]] = {name: [] for name in ("kernel", *MODELS)}
     for _ in range(rounds):
         rows["kernel"].append(kernel_times(program))
         for name in MODELS:
-            rows[name].append(apart(name, given, 1, "avx2"))
+            rows[name].append(apart(name, options, 1, "avx2"))
     return {
         name: {kind: min(row[kind] for row in measured) for kind in ("run", "member")}
         for name, measured in rows.items()
@@ -71,16 +71,16 @@ def allocations(program: Path, case: Path) -> tuple[int, int]:
         command = [str(shutil.which("valgrind")), str(program), str(case), kind, str(COUNTED)]
         environment = {**os.environ, "RAYON_NUM_THREADS": "1", LANES: "avx2"}
         done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)  # noqa: S603
-        found = _HEAP.search(done.stderr)
-        assert found is not None, "valgrind says how much memory was asked for"
-        sums.append([int(number.replace(",", "")) for number in found.groups()])
+        usage = _HEAP.search(done.stderr)
+        assert usage is not None, "valgrind says how much memory was asked for"
+        sums.append([int(number.replace(",", "")) for number in usage.groups()])
     return sums[0][0] - sums[1][0], sums[0][1] - sums[1][1]
 
 
-def table(folder: Path, given: argparse.Namespace) -> str:
+def table(folder: Path, options: argparse.Namespace) -> str:
     """Everything measured, as a table."""
     kernel = build(folder.resolve())
-    times = in_turns(kernel, given.rounds, given)
+    times = in_turns(kernel, options.rounds, options)
     bound = times.pop("kernel")
     rows = [["kernel", f"{1e3 * bound['run']:.1f} ms", "1", f"{1 / bound['member']:.0f}", "1", "", "", ""]]
     with tempfile.TemporaryDirectory() as place:
@@ -110,25 +110,25 @@ def table(folder: Path, given: argparse.Namespace) -> str:
             )
     head = ("program", "one run", "/ kernel", "members/s", "/ kernel")
     head += ("instructions a stage", "FLOP a stage", "allocations of a run")
-    note = f"{page.conditions(given.days)}; one thread, {given.rounds} rounds. Asked: 2.5 and 0.5."
+    note = f"{page.conditions(options.days)}; one thread, {options.rounds} rounds. Asked: 2.5 and 0.5."
     return f"{page.table(head, rows)}\n\n{note}"
 
 
 def main() -> None:
     """Measure, print, and write on demand."""
-    options = argparse.ArgumentParser(
+    parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    options.add_argument("folder", type=Path)
-    options.add_argument("--rounds", type=int, default=5)
-    options.add_argument("--days", type=int, default=92)
-    options.add_argument("--members", type=int, default=16)
-    options.add_argument("--repeats", type=int, default=2)
-    options.add_argument("--write", type=Path, help="page whose table is replaced")
-    given = options.parse_args()
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--days", type=int, default=92)
+    parser.add_argument("--members", type=int, default=16)
+    parser.add_argument("--repeats", type=int, default=2)
+    parser.add_argument("--write", type=Path, help="page whose table is replaced")
+    options = parser.parse_args()
     if not counting.at_hand():
         raise SystemExit("counting takes valgrind, objdump and an x86_64 processor")
-    page.publish("kernel", table(given.folder, given), given.write)
+    page.publish("kernel", table(options.folder, options), options.write)
 
 
 if __name__ == "__main__":

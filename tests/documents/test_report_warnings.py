@@ -231,8 +231,8 @@ def checked(part: str, **facts: Any) -> str:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(predictive_checks, "scatter_of", lambda *_: stated["scatter"])
         patch.setattr(predictive_checks, "_days", lambda _: [""] * stated["days"])
-        made = getattr(predictive_checks, part)(*arguments.get(part, (study,)))
-        return "\n".join(entry.text for entry in made)
+        entries = getattr(predictive_checks, part)(*arguments.get(part, (study,)))
+        return "\n".join(entry.text for entry in entries)
 
 
 CHECKED: dict[str, tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {
@@ -325,8 +325,8 @@ def carried(**facts: Any) -> list[str]:
     weather = {stated["channel"]: np.full(len(TIMES), stated["weather"])}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(bands, "_simulated", lambda *_: series)
-        made = bands.carried_bands(simulation, observation, posterior, [stated["output"]], [0.1], weather)
-    return list(made.words)
+        carried = bands.carried_bands(simulation, observation, posterior, [stated["output"]], [0.1], weather)
+    return list(carried.words)
 
 
 CARRIED: dict[str, tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {

@@ -10,6 +10,8 @@ import pytest
 from scipy.optimize import brentq
 
 import mascarin as mc
+from mascarin.building.checks.humidity import humidity_warnings
+from mascarin.building.checks.overview import check
 from mascarin.building.parts.site_air import density
 from mascarin.errors import InputError
 from mascarin.physics import AIR_SPECIFIC_HEAT, LATENT_HEAT
@@ -130,3 +132,18 @@ def test_what_is_no_activity_is_refused(gain: dict[str, Any], words: str) -> Non
     humidity: dict[str, Any] = {"zones": {"room": {"gains": {"people": gain}}}}
     with pytest.raises(InputError, match=words):
         box(zones, humidity=humidity)
+
+
+def test_people_who_are_stated_in_one_section_alone_are_said() -> None:
+    """Heat and vapour of the same people stand in two sections: a difference is a warning."""
+    people = {"power": POWER, "activity": ACTIVITY}
+    both = {"room": {"gains": {"people": people}}}
+    apart = "do not belong together"
+    same = box(both, humidity={"zones": both})
+    assert not any(apart in line for line in humidity_warnings(same))
+    for zones, humid in ((both, {}), ({"room": {}}, {"zones": both})):
+        (line,) = [line for line in humidity_warnings(box(zones, humidity=humid)) if apart in line]
+        assert "2400 W" in line
+        assert "0 W" in line
+    assert any("of people at 120 W each, sensible part" in line for line in check(same))
+    assert any("of people at 120 W each, latent part" in line for line in check(same))

@@ -147,8 +147,8 @@ def test_two_candidates_that_act_alike_are_not_told_apart() -> None:
 def test_two_causes_that_are_both_there_are_no_alternatives_of_each_other() -> None:
     both = _change("offset", 0) + 1.18 * _change("offset", 2)
     apart = diagnose(drawn(11, both), COVARIANCE, draws=199).findings
-    assert [one.told for one in apart[:2]] == [True, True]
-    assert {one.candidate.subject for one in apart[:2]} == {("room",), ("roof",)}
+    assert [finding.told for finding in apart[:2]] == [True, True]
+    assert {finding.candidate.subject for finding in apart[:2]} == {("room",), ("roof",)}
     # Among single causes neither has the probability at which one is told.
     scores = scores_of(drawn(11, both), _tools()[0], _tools()[1])
     evidence = scores.evidence()
@@ -170,8 +170,8 @@ def test_the_search_ends_at_a_fault_that_has_bent_the_fit() -> None:
 
 
 def test_a_value_without_a_meaning_is_no_cause() -> None:
-    one = drawn(12, _change("offset", 0))
-    offset = next(c for c in one.candidates if c.key == ("data", "room") and c.what == "offset")
+    experiment = drawn(12, _change("offset", 0))
+    offset = next(c for c in experiment.candidates if c.key == ("data", "room") and c.what == "offset")
     # The absorptance would have to be negative.
     absorptance = replace(
         offset,
@@ -181,11 +181,12 @@ def test_a_value_without_a_meaning_is_no_cause() -> None:
         sd=1.0,
         signature=-offset.signature,
     )
-    for limits, told in (((-np.inf, np.inf), False), ((-0.2, np.inf), True)):
-        both = replace(one, candidates=(*one.candidates, replace(absorptance, limits=limits)))
-        found = diagnose(both, COVARIANCE, draws=199).findings[0]
-        assert found.told is told, limits
-        assert ("absorptance",) in [other.subject for other in (found.candidate, *found.others)] or told
+    for limits, accused in (((-np.inf, np.inf), False), ((-0.2, np.inf), True)):
+        both = replace(experiment, candidates=(*experiment.candidates, replace(absorptance, limits=limits)))
+        finding = diagnose(both, COVARIANCE, draws=199).findings[0]
+        assert finding.told is accused, limits
+        subjects = [candidate.subject for candidate in (finding.candidate, *finding.others)]
+        assert ("absorptance",) in subjects or accused
 
 
 def test_limits_of_a_size_by_quadrature() -> None:

@@ -24,8 +24,8 @@ def air() -> xr.DataArray:
 
 
 def test_a_time_with_an_offset_is_that_time(air: xr.DataArray) -> None:
-    wanted = float(air[12])
-    assert wanted != float(air[19])
+    expected = float(air[12])
+    assert expected != float(air[19])
     for time in (
         "2001-07-01 12:00-07:00",
         "2001-07-01 19:00Z",
@@ -33,16 +33,16 @@ def test_a_time_with_an_offset_is_that_time(air: xr.DataArray) -> None:
         pd.Timestamp("2001-07-01 21:00+02:00"),
         air["time"].to_numpy()[12],  # a value of the coordinate is UTC
     ):
-        assert float(air.sel(time=time)) == wanted
-        assert float(air.sel({"time": time})) == wanted
+        assert float(air.sel(time=time)) == expected
+        assert float(air.sel({"time": time})) == expected
     part = air.sel(time=slice("2001-07-01 12:00-07:00", None))
-    assert float(part[0]) == wanted
-    assert air.sel(time=["2001-07-01 12:00-07:00"]).to_numpy().tolist() == [wanted]
+    assert float(part[0]) == expected
+    assert air.sel(time=["2001-07-01 12:00-07:00"]).to_numpy().tolist() == [expected]
     times = pd.DatetimeIndex(["2001-07-01 12:00"], tz=DENVER)
-    assert air.sel(time=times).to_numpy().tolist() == [wanted]
-    assert float(air.sel(time="2001-07-01 12:01-07:00", method="nearest")) == wanted
+    assert air.sel(time=times).to_numpy().tolist() == [expected]
+    assert float(air.sel(time="2001-07-01 12:01-07:00", method="nearest")) == expected
     # Without a time, and after arithmetic, it is a series of xarray as any other.
-    assert float((air - 1.0).sel(time="2001-07-01 12:00-07:00")) == pytest.approx(wanted - 1.0)
+    assert float((air - 1.0).sel(time="2001-07-01 12:00-07:00")) == pytest.approx(expected - 1.0)
     assert air.sel().equals(air)
 
 

@@ -135,13 +135,17 @@ def _in_zones(building: Description) -> Iterator[str]:
     heat = heat_capacity(building.site)
     for name, zone in building.zones.items():
         for key, gain in zone.gains.items():
-            words = f"{gain.in_words('W')}, {100 * gain.radiative:g} % radiated"
+            people = "" if gain.activity is None else f" of people at {gain.activity:g} W each, sensible part"
+            words = f"{gain.in_words('W')}{people}, {100 * gain.radiative:g} % radiated"
             yield f"zone {name}: gain {key} of {words}{_scheduled(gain.schedule)}"
         for key, air in zone.ventilation.items():
             flow = float(air.flow or 0.0) + float(air.air_changes or 0.0) * float(zone.volume or 0.0) / 3600.0
             steered = _scheduled(air.schedule) + _controlled(air.control)
             words = f"{flow * heat:.2f} W/K{_of_air(air)}{steered}"
             yield f"zone {name}: ventilation {key} of {words}"
+        if zone.air_gradient is not None:
+            gradient = zone.air_gradient
+            yield f"zone {name}: air gradient of {gradient.in_words('K/m')}{_scheduled(gradient.schedule)}"
         for which, loads in zone.loads.items():
             target = loads.setpoint.words
             most = "without limit" if loads.capacity is None else f"at most {loads.capacity:g} W"
@@ -158,7 +162,8 @@ def _in_zones(building: Description) -> Iterator[str]:
         ends = (
             f"from {' to '.join(path.between)}" if path.one_way else f"between {' and '.join(path.between)}"
         )
-        yield f"air path {name}: {_flow(path, heat)} {ends}{_scheduled(path.schedule)}"
+        steered = _scheduled(path.schedule) + _controlled(path.control)
+        yield f"air path {name}: {_flow(path, heat)} {ends}{steered}"
     for name, unit in building.ventilation_units.items():
         yield from _unit(name, unit, heat)
     for name, opening in building.openings.items():
@@ -182,7 +187,8 @@ def _vents(building: Description) -> Iterator[str]:
             for which, time in (("open", control.minimum_open_time), ("closed", control.minimum_closed_time))
             if time is not None
         )
-        yield f"control {name} in {control.zone} opens and closes at {bands}{times}"
+        other = "" if control.reference_zone is None else f" (difference to {control.reference_zone})"
+        yield f"control {name} in {control.zone}{other} opens and closes at {bands}{times}"
 
 
 def _heat_sources(building: Description) -> Iterator[str]:
