@@ -299,6 +299,19 @@ def test_sliders_where_the_sky_is_that_of_the_weather() -> None:
     assert "site.sky.scale" in [one.path for one in run.parameters()]  # that of the weather
 
 
+def test_curves_without_a_choice_are_those_of_rooms() -> None:
+    """No attic and no ventilated gap, as in the sums of comfort; ideal loads after temperatures."""
+    house = mc.load(HOUSE)
+    assert choice.curves(house) == ["living.operative_temperature", "bedroom.operative_temperature"]
+    cell = mc.new_room("4x3x2.8", gap="ventilated", ceiling="plasterboard 12.5mm")
+    assert any(output.name == "gap.operative_temperature" for output in cell.outputs())
+    assert choice.curves(cell) == ["room.operative_temperature"]
+    cooled = house.replace(
+        {"zones.bedroom": {**house.to_dict()["zones"]["bedroom"], "cooling": {"setpoint": 26}}}
+    )
+    assert choice.curves(cooled)[2:] == ["bedroom.cooling_load"]
+
+
 def test_parameters_that_do_not_exist_or_cannot_vary_are_named() -> None:
     with pytest.raises(InputError, match="absorptance"):
         Session(box(), box_climate(), parameters=["surfaces.facade.outside.absorptanc"])

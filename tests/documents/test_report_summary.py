@@ -10,8 +10,9 @@ import pytest
 
 import report_example
 from mascarin.pages.study import write
+from mascarin.pages.study.data.main_results import worst_sensor
 from mascarin.pages.study.page import _errors, coverage_facts
-from mascarin.pages.study.sections import summary
+from mascarin.pages.study.sections import curves, summary
 from mascarin.study_document.analysis import ContradictionEntry
 from mascarin.study_document.document import StudyDocument
 
@@ -170,3 +171,30 @@ def test_every_parameter_at_an_end_is_named() -> None:
                              "source, or look for a cause outside of the parameters.")  # fmt: skip
     assert "z0 · infiltration and z1 · infiltration are at the ends of their stated ranges" in named(2)
     assert "z3 · infiltration and 2 more are at the ends" in named(6)
+
+
+def test_the_figure_of_the_summary_shows_the_worst_sensor_and_says_so() -> None:
+    """By its criteria; where the period has none, by the rmse among sensors of the first unit."""
+    names = ["room_air", "steel", "heater"]
+    info = {"room_air": {"unit": "degC"}, "steel": {"unit": "degC"}, "heater": {"unit": "W"}}
+    errors = {"room_air": 0.2, "steel": 0.5, "heater": 40.0}
+    sensors = {name: {"blind": {"fitted": {"rmse": errors[name]}}} for name in names}
+    plain = study(sensors=sensors, sensor_info=info)
+    assert worst_sensor(plain, "blind", names) == ("steel", "of 3 sensors that with the largest rmse")
+    limited = [criterion(0.9), criterion(0.5, sensor="steel"), criterion(0.7, sensor="heater")]
+    judged = study(sensors=sensors, sensor_info=info, criteria=limited)
+    assert worst_sensor(judged, "blind", names) == ("room_air", "of 3 sensors the nearest to a limit")
+    missed = study(sensors=sensors, criteria=[*limited, criterion(-1.4, sensor="heater")])
+    assert worst_sensor(missed, "blind", names) == ("heater", "of 3 sensors the farthest beyond a limit")
+    assert worst_sensor(missed, "blind", ["steel"]) == ("steel", "")
+
+
+def test_the_caption_of_the_figure_names_that_sensor() -> None:
+    raw, series = report_example.lgi()
+    document = StudyDocument.read(raw)
+    shown = curves.last_period(document, series)
+    assert shown is not None
+    measured = [name for name in document.sensor_info if f"observed/{name}" in series.columns]
+    worst, reason = worst_sensor(document, "blind", measured)
+    assert shown.title.startswith(document.sensor_info[worst].label or worst)
+    assert shown.title.endswith(f"({reason})")

@@ -108,7 +108,7 @@ def sweep(
         does not close, temperatures without a cause, a step too long for the air of a zone) and the warnings
         of one more run with the values of the building. In single precision ``single_precision`` says how far
         each output or objective of some members is from double precision. Coordinates ``time`` (UTC) and
-        ``local_time``.
+        ``local_time``; `sel` takes times with an offset, as that of a run.
 
     Raises
     ------

@@ -373,7 +373,8 @@ class Store:
         """Members from `first` to before `until`."""
         import pandas as pd
         import pyarrow as pa
-        import xarray as xr
+
+        from mascarin.simulation.records.series import RunDataset
 
         filters = [("member", ">=", first), ("member", "<", until)]
         table = pa.concat_tables(self._tables(filters=filters)).sort_by("member")
@@ -388,8 +389,7 @@ class Store:
         for name, unit in self.manifest["kept"].items():
             values = table.column(name).combine_chunks()
             flat = (values if len(dims) == 1 else values.flatten()).to_numpy(zero_copy_only=False)
-            shape = (len(members), -1)[: len(dims)]
-            data[name] = xr.DataArray(flat.reshape(shape), dims=dims, attrs=attributes(name, unit))
+            data[name] = (dims, flat.reshape((len(members), -1)[: len(dims)]), attributes(name, unit))
         units = self.manifest.get("sample_units", {})
         for path in self.manifest["paths"]:
             column = table.column(f"sample: {path}").to_pandas().to_numpy()
@@ -408,7 +408,7 @@ class Store:
             "mascarin_version": self.manifest["mascarin_version"],
             **({"single_precision": said} if (said := self.single_precision()) else {}),
         }
-        return xr.Dataset(data, coords=coords, attrs=facts)
+        return RunDataset(data, coords=coords, attrs=facts)
 
     def _width(self) -> int:
         """Numbers in a row."""

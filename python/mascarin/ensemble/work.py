@@ -191,7 +191,9 @@ def dataset(outputs: list[Output], index: pd.DatetimeIndex, records: Array) -> x
     """Series by name over (member, time); times as in all results."""
     import xarray as xr
 
-    return xr.Dataset(
+    from mascarin.simulation.records.series import RunDataset
+
+    return RunDataset(
         {
             output.name: xr.DataArray(
                 records[:, :, k],

@@ -101,8 +101,8 @@ def _found(name: str, kind: str, examples: Mapping[str, Path]) -> Path:
     if path.is_dir() and (path / f"{kind}.yaml").is_file():
         return path / f"{kind}.yaml"
     raise InputError(
-        f"{name}: found no {kind} file, expected a YAML file or one of {', '.join(examples)}. "
-        f"{did_you_mean(name, examples)}".rstrip()
+        f"{name}: found no {kind} file, expected a YAML file or the name of an example. "
+        f"{did_you_mean(name, examples)}"
     )
 
 

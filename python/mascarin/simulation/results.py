@@ -274,8 +274,8 @@ class Results(Mapping[str, "xr.DataArray"]):
         Returns
         -------
         xarray.Dataset
-            Each output over ``time`` (UTC, without a zone), with the coordinate ``local_time`` (the local
-            clock, without a zone) and the attribute ``timezone``.
+            Each output over ``time`` (UTC), with the coordinate ``local_time`` (local clock) and the
+            attribute ``timezone``. Its `sel`, and that of its series, takes times with an offset.
 
         Examples
         --------
@@ -284,9 +284,9 @@ class Results(Mapping[str, "xr.DataArray"]):
         >>> sorted(mc.simulate(box(), box_climate(), step="1h").to_xarray().coords)
         ['local_time', 'time']
         """
-        import xarray as xr
+        from mascarin.simulation.records.series import RunDataset
 
-        return xr.Dataset({name: self[name] for name in self}, attrs=self._attributes())
+        return RunDataset({name: self[name] for name in self}, attrs=self._attributes())
 
     def _attributes(self) -> dict[str, Any]:
         """Version, provenance, energy balance and outputs, as files hold them."""

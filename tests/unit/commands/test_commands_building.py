@@ -9,7 +9,9 @@ import jsonschema
 import pytest
 from ruamel.yaml import YAML
 
+import mascarin as mc
 from mascarin import cli
+from mascarin.examples import FOLDER
 
 WALL = """\
 name: Bench
@@ -53,6 +55,22 @@ def test_check_describes_the_building(wall: str, capsys: pytest.CaptureFixture[s
     out = run(capsys, "check", wall)
     assert out.startswith("Bench: 0 zones, 1 surface")
     assert "assumed: materials.concrete.specific_heat = 880 J/(kg K)" in out
+
+
+def test_check_says_once_what_several_parts_have_alike(capsys: pytest.CaptureFixture[str]) -> None:
+    house = str(FOLDER / "reunion_house" / "building.yaml")
+    out = run(capsys, "check", house)
+    lines = [line for line in out.splitlines() if line.startswith("assumed: ")]
+    assert "assumed: vents.{living_north_jalousie, living_south_jalousie, bedroom_north_jalousie, " in out
+    assert "assumed: zones.{living, bedroom}.capacity_factor = 3 (" in out
+    assert "assumed: zones.attic.capacity_factor = 1 (" in out
+    # Every number that is assumed is in one line, and no line is there twice.
+    assert len(lines) == len(set(lines)) < 100
+    listed = 0
+    for line in lines:
+        path = line.removeprefix("assumed: ").split(" = ")[0]
+        listed += path.count(",") + 1 if " = " in line else 0
+    assert listed == sum(number.assumed for number in mc.load(house).parameters())
 
 
 def test_check_as_json_separates_assumptions_from_findings(

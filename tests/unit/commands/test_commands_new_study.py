@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from ruamel.yaml import YAML
 
 from mascarin.building.files.yaml_document import plain
 from mascarin.cli import main
-from mascarin.examples import STUDIES
+from mascarin.examples import DESIGNS, STUDIES
 
 
 def yaml(path: Path) -> dict[str, Any]:
@@ -56,6 +57,34 @@ def test_every_example_can_be_started_from(
     assert main(["check", str(folder / "building.yaml")]) == 0
 
 
+def test_the_designs_of_a_house_can_be_started_from(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "my house"
+    assert main(["init", str(folder), "--example", "reunion-house"]) == 0
+    said = capsys.readouterr()
+    copied, example = yaml(folder / "design.yaml"), yaml(DESIGNS["reunion-house"])
+    assert copied["name"] == "New comparison of designs"
+    assert copied["about"] == "Describe your building and your question here."
+    # The reference building of a comparison is kept: it is no published number.
+    described = ("name", "about")
+    assert {k: v for k, v in copied.items() if k not in described} == {
+        k: v for k, v in example.items() if k not in described
+    }
+    text = (folder / "design.yaml").read_text(encoding="utf-8")
+    assert "reunion-house" not in text
+    schema = json.loads((folder / "design.schema.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(schema).validate(plain(text, "design"))
+    # Every command that it names works.
+    commands = [shlex.split(line.removeprefix("next:").strip()) for line in said.err.splitlines()]
+    typed = [words[1:] for words in commands if words[0] == "mascarin"]
+    assert [words[0] for words in typed] == ["check", "run", "design", "design"]
+    for words in (typed[0], [*typed[1], "--start", "01-10", "--end", "01-11", "--step", "10min"], typed[2]):
+        assert main(words) == 0, words
+    assert (folder / "run.html").is_file()
+    assert "60 designs in 3 climates" in capsys.readouterr().out
+
+
 def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "mine.txt").write_text("kept", encoding="utf-8")
     assert main(["init", str(tmp_path)]) == 2
@@ -68,4 +97,7 @@ def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[st
 def test_an_unknown_example_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["init", str(tmp_path / "new"), "--example", "lgl"]) == 2
     assert "Did you mean 'lgi'?" in capsys.readouterr().err
+    assert main(["init", str(tmp_path / "new"), "--example", "palace"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("wall-bench") == said.count("reunion-house") == 1
     assert not (tmp_path / "new").exists()

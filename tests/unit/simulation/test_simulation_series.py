@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import tempfile
 from datetime import datetime
+from pathlib import Path
 from typing import Any
 from zoneinfo import ZoneInfo
 
@@ -11,7 +13,7 @@ import pytest
 import xarray as xr
 
 import mascarin as mc
-from mascarin.ensemble import Statistic
+from mascarin.ensemble import Statistic, sweep_into
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
 
@@ -71,6 +73,56 @@ def test_a_time_beside_the_records_is_refused_with_what_there_is(air: xr.DataArr
         air.sel(time="noon")
     with pytest.raises(InputError, match="from 2001-07-01 07:00Z"):
         air.drop_vars("local_time").sel(time="2003-07-01 12:00Z")
+
+
+def data_sets() -> dict[str, xr.Dataset]:
+    """Every data set over time that the package gives."""
+    path = "surfaces.facade.outside.absorptance"
+    outputs = ["room.air_temperature"]
+    run = mc.simulate(box(), box_climate(), step="1h", outputs=outputs)
+    with tempfile.TemporaryDirectory() as folder:
+        samples = {path: [0.3, 0.6]}
+        store = sweep_into(f"{folder}/s", box(), box_climate(), samples, step="1h", outputs=outputs)
+        stored = store.to_xarray()
+    return {
+        "run": run.to_xarray(),
+        "sweep": mc.sweep(box(), box_climate(), samples, step="1h", outputs=outputs),
+        "store": stored,
+        "jacobian": mc.jacobian(box(), box_climate(), [path], step="1h", outputs=outputs),
+    }
+
+
+def test_every_data_set_asks_for_the_offset_as_a_run_does() -> None:
+    name, noon = "room.air_temperature", "2001-07-01 12:00-07:00"
+    for kind, data in data_sets().items():
+        by_position = data[name].isel(time=12).to_numpy()
+        assert by_position.tolist() != data[name].isel(time=19).to_numpy().tolist(), kind
+        assert data.sel(time=noon)[name].to_numpy().tolist() == by_position.tolist(), kind
+        assert data[name].sel(time=noon).to_numpy().tolist() == by_position.tolist(), kind
+        # Also after a part was taken, members and coordinates were changed, and by names in brackets.
+        for part in (data[[name]], data.assign_attrs(a=1), data.copy(), data.isel(time=slice(2, None))):
+            for chosen in (part, part[name]):
+                with pytest.raises(InputError, match=r"without an offset.*2001-07-01 0\d:00-07:00'"):
+                    chosen.sel(time="2001-07-01 12:00")
+        with pytest.raises(InputError, match="expected the time of a record from 2001-07-01 00:00-07:00"):
+            data.sel(time="2003-07-01 12:00Z")
+        assert data["time"].attrs["long_name"] == "time (UTC)", kind
+        assert data["local_time"].attrs["long_name"].startswith("local time"), kind
+        assert data.attrs["timezone"], kind
+
+
+def test_what_is_not_a_time_is_missed_in_the_words_of_xarray() -> None:
+    sweep = data_sets()["sweep"]
+    with pytest.raises(KeyError, match="member"):
+        sweep.sel(member=99, time="2001-07-01 12:00-07:00")
+    assert sweep.sel(member=1)["room.air_temperature"].dims == ("time",)
+
+
+def test_files_say_which_clock_their_times_are(tmp_path: Path) -> None:
+    mc.simulate(box(), box_climate(), step="1h").to_netcdf(tmp_path / "run.nc")
+    with xr.open_dataset(tmp_path / "run.nc") as data:
+        assert data["time"].attrs["long_name"] == "time (UTC)"
+        assert data["local_time"].attrs["long_name"] == "local time (zone: attribute timezone)"
 
 
 def test_objectives_may_be_texts() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mascarin.commands.studies.study import day_lines
 from mascarin.errors import InputError
 from mascarin.validation.days import choose_days
 
@@ -48,3 +49,16 @@ def test_ranges_of_drivers() -> None:
 def test_shapes_that_do_not_match_are_refused() -> None:
     with pytest.raises(InputError, match=r"found shape \(1, 2, 1\), expected \(parameters, 3, 1\)"):
         choose_days(np.ones((1, 2, 1)), [1.0], LABELS, [0, 1, 2], [True, False, False], precision=[0.0])
+
+
+def test_the_terminal_says_in_words_what_an_extrapolation_is() -> None:
+    slopes = np.array([1.0, 2.0, 0.0])[None, :, None]
+    choice = choose_days(slopes, [0.5], LABELS, [0, 1, 2], [True, False, False], precision=[0.0])
+    assert day_lines(choice) == [
+        "1 of 2 days that the calibration did not use is an extrapolation: there the variance of the "
+        "prediction from the parameters is more than 3 times that of the days used",
+        "days that would tell most about the parameters, if measured or calibrated on: Tue",
+    ]
+    slopes[0, 1] = 1.0
+    none = choose_days(slopes, [0.5], LABELS, [0, 1, 2], [True, False, False], precision=[0.0])
+    assert day_lines(none)[0] == "none of 2 days that the calibration did not use is an extrapolation"

@@ -399,10 +399,17 @@ def _two_curves(material: PhaseChangeMaterial, model: str, cooling: FractionLaw,
 
 def assumptions(building: Description) -> Iterator[str]:
     """Assumed values: numbers marked as assumed, and models chosen because none is given."""
+    # What several parts have alike is said once: surfaces.{north, south}.inside.emissivity = 0.9.
+    names: dict[tuple[str, str, str], list[str]] = {}
     for number in parameters(building):
         if number.assumed:
             unit = "" if number.unit == "-" else f" {number.unit}"
-            yield f"{number.path} = {number.value:g}{unit} ({number.source or 'no source'})"
+            section, name, *rest = number.path.split(".")
+            value = f"{number.value:g}{unit} ({number.source or 'no source'})"
+            names.setdefault((section, ".".join(rest), value), []).append(name)
+    for (section, rest, value), alike in names.items():
+        name = alike[0] if len(alike) == 1 else f"{{{', '.join(alike)}}}"
+        yield f"{section}.{name}{'.' * bool(rest)}{rest} = {value}"
     outdoors = [item.side for item in every_side(building) if item.side.outdoors]
     if outdoors and "sky" not in building.site.model_fields_set:
         yield "site.sky: infrared of the weather file, else martin_berdahl, because none is given"

@@ -13,6 +13,7 @@ from mascarin._io.numbers import beside_limit, with_interval
 from mascarin.commands.options.exit_code import exit_code
 from mascarin.commands.options.inputs import AsJson, Outside
 from mascarin.commands.options.output import number, print_json, print_table
+from mascarin.validation.days import EXTRAPOLATION_RATIO
 
 if TYPE_CHECKING:
     from mascarin.simulation.checks.warning_kinds import RunWarning
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from mascarin.study_document.document import StudyDocument
     from mascarin.study_document.estimates import ParameterEntry
     from mascarin.tables.quality import Stretch
+    from mascarin.validation.days import DayChoice
 
 
 _SHOWN: Final = 10
@@ -314,6 +316,31 @@ def _exit_code(
     return exit_code(warnings=warnings, sound=sound, missed=len(missed))
 
 
+def day_lines(choice: DayChoice) -> list[str]:
+    """Whether the other days are like those of the calibration, and which days would tell most.
+
+    Parameters
+    ----------
+    choice : DayChoice
+        The days compared.
+
+    Returns
+    -------
+    list of str
+        Lines for the terminal; none where no day is proposed.
+    """
+    if not choice.proposed:
+        return []
+    far, unused = int(choice.extrapolated.sum()), int((~choice.used).sum())
+    verb = "is an extrapolation" if far < 2 else "are extrapolations"
+    counted = f"{far or 'none'} of {unused} days that the calibration did not use {verb}"
+    if far:
+        ratio = f"{EXTRAPOLATION_RATIO:g} times that of the days used"
+        counted += f": there the variance of the prediction from the parameters is more than {ratio}"
+    named = ", ".join(choice.days[day] for day in choice.proposed)
+    return [counted, f"days that would tell most about the parameters, if measured or calibrated on: {named}"]
+
+
 def _print_summary(opened: Study, results: StudyResults, content: StudyDocument, out: Path) -> None:
     """Print a summary on standard error; what it counts are the entries of the report."""
     shown = content.without_repeated_periods()
@@ -343,10 +370,7 @@ def _print_summary(opened: Study, results: StudyResults, content: StudyDocument,
     if results.diagnosis.causes:
         lines.append("causes of the remaining error:")
         lines += [f"  {number}. {cause.text}" for number, cause in enumerate(results.diagnosis.causes, 1)]
-    if results.days.proposed:
-        named = ", ".join(results.days.days[d] for d in results.days.proposed)
-        far = int(results.days.extrapolated.sum())
-        lines.append(f"days outside of what the identification has excited: {far}; to use next: {named}")
+    lines += day_lines(results.days)
     residual = results.fitted.results.energy.closure
     lines.append(f"relative energy-balance residual {residual:.1e}; {results.seconds:.0f} s")
     lines.append(f"report: {out / 'report.html'}")

@@ -10,6 +10,7 @@ import numpy as np
 from mascarin._io import units
 from mascarin.building.base.wildcards import is_pattern, matching
 from mascarin.building.outputs.kinds import KINDS
+from mascarin.building.rooms import lived_in
 from mascarin.errors import InputError, SolverError
 from mascarin.figures import text
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 #: Sliders without a choice, and the most that a page has.
 DEFAULT_SLIDERS: Final = 6
 MAX_SLIDERS: Final = 40
-#: Zones whose operative temperature is drawn without a choice.
+#: Rooms whose operative temperature is drawn without a choice.
 MAX_ZONES: Final = 6
 
 
@@ -176,7 +177,9 @@ def _relative_width(parameter: Parameter) -> float:
 
 
 def curves(building: Building) -> list[str]:
-    """Outputs that are drawn without a choice: operative temperatures, then ideal loads, of the first zones.
+    """Outputs that are drawn without a choice: operative temperatures, then ideal loads, of the first rooms.
+
+    Attics, cavities and other zones in which nobody lives are drawn when they are asked for.
 
     Parameters
     ----------
@@ -190,10 +193,13 @@ def curves(building: Building) -> list[str]:
     ['room.operative_temperature']
     """
     outputs = building.outputs()
-    operative = [output.name for output in outputs if output.kind == "operative_temperature"][:MAX_ZONES]
-    loads = [output.name for output in outputs if output.kind in ("heating_load", "cooling_load")]
-    zones = {name.rpartition(".")[0] for name in operative}
-    chosen = operative + [name for name in loads if name.rpartition(".")[0] in zones]
+    inhabited = lived_in(building)[:MAX_ZONES]
+    chosen = [
+        output.name
+        for kinds in (("operative_temperature",), ("heating_load", "cooling_load"))
+        for output in outputs
+        if output.kind in kinds and output.name.rpartition(".")[0] in inhabited
+    ]
     return chosen or [output.name for output in outputs if output.kind == "face_temperature"][: 2 * MAX_ZONES]
 
 

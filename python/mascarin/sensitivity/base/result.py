@@ -228,9 +228,13 @@ class Sensitivity:
         -------
         xarray.Dataset
             Variables named like the columns of `to_dataframe`; the spectral method adds ``S1_over_time`` and
-            others. Coordinate ``time`` is UTC, ``local_time`` the local clock, both without zone.
+            others. Coordinate ``time`` is UTC, ``local_time`` the local clock, both without zone; `sel` takes
+            times with an offset, as that of a run.
         """
         import xarray as xr
+
+        from mascarin.simulation.records.labels import time_coordinates
+        from mascarin.simulation.records.series import RunDataset
 
         dims = ("parameter", "output")
         data: dict[str, Any] = {name: (dims, array) for name, array in self._arrays().items()}
@@ -250,10 +254,10 @@ class Sensitivity:
             "seed": self.seed,
         }
         if self.times is not None and self._arrays_over_time():
-            local = self.times.tz_localize(None)
-            coordinates["time"] = local if self.times.tz is None else self.times.tz_convert(None)
-            coordinates["local_time"] = ("time", local)
             attributes["timezone"] = str(self.times.tz)
+            if self.times.tz is not None:
+                return RunDataset(data, coordinates | time_coordinates(self.times), attributes)
+            coordinates |= {"time": self.times, "local_time": ("time", self.times)}
         return xr.Dataset(data, coordinates, attributes)
 
     def to_dict(self) -> dict[str, dict[str, dict[str, float | None]]]:

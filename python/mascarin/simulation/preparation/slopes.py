@@ -91,6 +91,8 @@ def labelled_slopes(
     """
     import xarray as xr
 
+    from mascarin.simulation.records.series import RunDataset
+
     data = {}
     for k, output in enumerate(outputs):
         attributes = {"units": output.unit, "long_name": output.name}
@@ -102,6 +104,6 @@ def labelled_slopes(
         data[f"d {output.name}"] = xr.DataArray(slopes[:, :, k], dims=("parameter", "time"), attrs=attributes)
     units = np.array(list(parameters.values()))
     coordinates = {"parameter": list(parameters), "parameter_unit": ("parameter", units)}
-    return xr.Dataset(
+    return RunDataset(
         data, coords={**time_coordinates(index), **coordinates}, attrs={"timezone": str(index.tz)}
     )

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.simulation.records.provenance import Provenance
+
+
+#: Attribute ``long_name`` of the coordinates of time, in memory and in files.
+TIME_NAMES: Final = {"time": "time (UTC)", "local_time": "local time (zone: attribute timezone)"}
 
 
 def time_coordinates(index: pd.DatetimeIndex) -> dict[str, Any]:
@@ -22,12 +26,12 @@ def time_coordinates(index: pd.DatetimeIndex) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``time``: UTC, without a zone; ``local_time`` along it: the local clock, without a zone. The zone
-        itself belongs into the attribute ``timezone``.
+        ``time``: UTC, without a zone; ``local_time`` along it: the local clock, without a zone. Their
+        attribute ``long_name`` says so. The zone itself belongs into the attribute ``timezone``.
     """
     return {
-        "time": index.tz_convert("UTC").tz_localize(None),
-        "local_time": ("time", index.tz_localize(None)),
+        "time": ("time", index.tz_convert("UTC").tz_localize(None), {"long_name": TIME_NAMES["time"]}),
+        "local_time": ("time", index.tz_localize(None), {"long_name": TIME_NAMES["local_time"]}),
     }
 
 

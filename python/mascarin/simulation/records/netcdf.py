@@ -18,6 +18,7 @@ import h5py
 import numpy as np
 
 from mascarin import __version__
+from mascarin.simulation.records.labels import TIME_NAMES
 from mascarin.simulation.records.netcdf_reading import seal
 
 if TYPE_CHECKING:
@@ -212,6 +213,7 @@ class _Stamps:
         _number(stamps.id, "_Netcdf4Dimid", np.int32(0))
         _text(stamps.id, "units", f"{unit} since {text}")
         _text(stamps.id, "calendar", "proleptic_gregorian")
+        _text(stamps.id, "long_name", TIME_NAMES[name])
 
     def close(self, references: Sequence[h5py.h5r.Reference]) -> None:
         """Tell the dimension which series run along it."""

@@ -110,3 +110,48 @@ def mean_errors(study: StudyDocument, period: str) -> dict[str, list[float]]:
         if bias is not None:
             by_unit.setdefault(units.difference(unit_of(study, sensor)), []).append(float(bias))
     return by_unit
+
+
+def worst_sensor(study: StudyDocument, period: str, sensors: list[str]) -> tuple[str, str]:
+    """The sensor with the largest error in a period, and why it is that.
+
+    Where criteria are judged in the period, the sensor that comes nearest to a limit or is farthest beyond
+    it; else that with the largest root mean square error among those of the first unit.
+
+    Parameters
+    ----------
+    study : StudyDocument
+        The results.
+    period : str
+        Key of the period.
+    sensors : list of str
+        Sensors to choose from, one at least.
+
+    Returns
+    -------
+    tuple of (str, str)
+        The sensor, and the reason in words; empty where there is no choice.
+    """
+    if len(sensors) == 1:
+        return sensors[0], ""
+    ratios: dict[str, float] = {}
+    for criterion in judged_criteria(study):
+        if criterion.period == period and criterion.sensor in sensors and criterion.value is not None:
+            limit = abs(criterion.limit or 0.0)
+            ratio = abs(criterion.value) / limit if limit else 0.0
+            ratios[criterion.sensor] = max(ratios.get(criterion.sensor, 0.0), ratio)
+    if ratios:
+        worst = max(ratios, key=lambda sensor: ratios[sensor])
+        words = "farthest beyond a limit" if ratios[worst] > 1.0 else "nearest to a limit"
+        return worst, f"of {len(sensors)} sensors the {words}"
+    model, unit = main_model(study), unit_of(study, sensors[0])
+    errors = {
+        sensor: float(deviation)
+        for sensor in sensors
+        if unit_of(study, sensor) == unit
+        and (deviation := study.metrics(sensor, period, model).rmse) is not None
+    }
+    if not errors:
+        return sensors[0], f"the first of {len(sensors)} sensors"
+    worst = max(errors, key=lambda sensor: errors[sensor])
+    return worst, f"of {len(sensors)} sensors that with the largest rmse"

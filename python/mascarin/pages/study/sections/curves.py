@@ -22,6 +22,7 @@ from mascarin.pages.study.data.labels import (
     short_periods,
     unit_of,
 )
+from mascarin.pages.study.data.main_results import worst_sensor
 from mascarin.pages.study.data.series import Series, moment
 from mascarin.pages.study.figures import html_figures
 from mascarin.pages.study.figures.comparison_data import (
@@ -128,12 +129,16 @@ def headline(study: StudyDocument, curves: Series) -> Panels | None:
         return None
     times, sensors = _of_period(study, curves, periods[-1])
     for name, compared in sensors.items():
-        return _single(study, times, name, compared, "headline")
+        panels = _single(study, times, name, compared, "headline")
+        count = len(sensors)
+        return (
+            replace(panels, title=f"{panels.title} (the first of {count} sensors)") if count > 1 else panels
+        )
     return None
 
 
 def last_period(study: StudyDocument, curves: Series) -> Panels | None:
-    """Curves of the first sensor over the first part of the last period, where it is not the headline's.
+    """Curves of the worst sensor over the first part of the last period, where it is not the headline's.
 
     Parameters
     ----------
@@ -146,12 +151,13 @@ def last_period(study: StudyDocument, curves: Series) -> Panels | None:
     if not periods or periods[-1] in short_periods(study)[-1:]:
         return None
     times, sensors = _of_period(study, curves, periods[-1])
-    for name, compared in sensors.items():
-        panels = _single(study, times, name, compared, "summary-blind")
-        span = text.span_of(times[0], times[-1])
-        label = period_label(study, periods[-1]).lower()
-        return replace(panels, title=f"{panels.title}, {label}, {span}")
-    return None
+    if not sensors:
+        return None
+    name, reason = worst_sensor(study, periods[-1], list(sensors))
+    panels = _single(study, times, name, sensors[name], "summary-blind")
+    span = text.span_of(times[0], times[-1])
+    label = period_label(study, periods[-1]).lower()
+    return replace(panels, title=f"{panels.title}, {label}, {span}{f' ({reason})' if reason else ''}")
 
 
 def _of_period(
