@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Final
 
 #: Width [px] and colors.
-LOOKS: Final[list[tuple[int, Any]]] = [(1280, "light"), (390, "dark")]
+LOOKS: Final[list[tuple[int, Any]]] = [(1280, "light"), (1280, "dark"), (390, "light"), (390, "dark")]
 
 #: Opens what is folded, but no live example, which would load its page.
 _UNFOLD: Final = "document.querySelectorAll('details:not(.live-example)').forEach(d => d.open = true)"

@@ -299,6 +299,26 @@ def test_sliders_where_the_sky_is_that_of_the_weather() -> None:
     assert "site.sky.scale" in [one.path for one in run.parameters()]  # that of the weather
 
 
+def test_the_page_of_a_building_shows_blinds_and_counts_what_is_assumed() -> None:
+    house = mc.load(HOUSE)
+    blind = {
+        "position": "outside",
+        "transmittance": 0.05,
+        "reflectance": 0.6,
+        "resistance": 0.17,
+        "radiation": 150,
+    }
+    shaded = house.replace({"windows.jalousie_living_north.blind": blind})
+    words = "outside, closed above 150 W/m2 on the window, transmits 5 % and reflects 60 % of the sun"
+    facts = {part["name"]: dict(part["facts"]) for part in scene(shaded, [])["parts"]}
+    assert facts["jalousie_living_north"]["Blind"] == words
+    assert "Blind" not in facts["jalousie_living_south"]
+    page = render(shaded)
+    assumed = sum(number.assumed for number in shaded.parameters())
+    assert f"{assumed} assumed values, with the reason of each" in page
+    assert any(f"blind {words}; U of the glass" in line for line in shaded.check())
+
+
 def test_curves_without_a_choice_are_those_of_rooms() -> None:
     """No attic and no ventilated gap, as in the sums of comfort; ideal loads after temperatures."""
     house = mc.load(HOUSE)

@@ -79,6 +79,58 @@ def test_axe_finds_nothing(page: Page, files: dict[str, Path], kind: str, width:
     assert cut == [] or width > 400
 
 
+#: Texts of a drawing that cover each other or leave it.
+COVERED: Final = """[...document.querySelectorAll('.series svg')].flatMap(svg => {
+  const frame = svg.getBoundingClientRect();
+  const boxes = [...svg.querySelectorAll('text')].map(e => [e.textContent, e.getBoundingClientRect()]);
+  const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top + 1
+    || b.bottom <= a.top + 1;
+  return boxes.flatMap(([name, a], i) => [
+    ...(a.top < frame.top - 2 || a.right > frame.right + 2 ? [`${name} leaves the drawing`] : []),
+    ...boxes.slice(i + 1).filter(([, b]) => !apart(a, b)).map(([other]) => `${name} covers ${other}`)]);
+})"""
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_no_text_of_a_run_covers_another(page: Page, files: dict[str, Path], width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 800})
+    page.goto(files["run"].as_uri())
+    assert page.locator(".series svg .axis-label").count() > 0
+    assert page.evaluate(COVERED) == []
+
+
+def test_figures_of_a_run_are_printed_with_their_titles(page: Page, files: dict[str, Path]) -> None:
+    """A title that may not follow a break ties its figure to the one before, and browsers break anywhere."""
+    page.goto(files["run"].as_uri())
+    page.emulate_media(media="print")
+    rules = """[...document.querySelectorAll('.series')].map(e => [getComputedStyle(e).breakInside,
+      getComputedStyle(e.querySelector("figcaption")).breakBefore,
+      getComputedStyle(e.querySelector("figcaption")).breakAfter])"""
+    assert page.evaluate(rules)
+    assert set(map(tuple, page.evaluate(rules))) == {("avoid", "auto", "avoid")}
+
+
+def test_names_over_a_building_are_in_their_places_on_paper_too(page: Page, files: dict[str, Path]) -> None:
+    page.set_viewport_size({"width": 1280, "height": 900})
+    page.goto(files["view"].as_uri())
+    page.wait_for_selector("#canvas[data-drawn]")
+    places = """[...document.querySelectorAll('#labels span:not([hidden])')].map(e => {
+      const [a, b] = [e, document.getElementById('canvas')].map(x => x.getBoundingClientRect());
+      return [e.textContent, (a.x + a.width/2 - b.x)/b.width, (a.y + a.height/2 - b.y)/b.height];
+    })"""
+    on_screen = page.evaluate(places)
+    assert {"living", "attic"} <= {name for name, _, _ in on_screen}
+    page.emulate_media(media="print")
+    on_paper = page.evaluate(places)
+    for (name, x, y), (same, x_paper, y_paper) in zip(on_screen, on_paper, strict=True):
+        assert name == same
+        assert (x_paper, y_paper) == pytest.approx((x, y), abs=0.02), name
+    ratio = "(e => e.clientWidth / e.clientHeight)(document.getElementById('canvas'))"
+    printed = page.evaluate(ratio)
+    page.emulate_media(media="screen")
+    assert printed == pytest.approx(page.evaluate(ratio), rel=0.02)
+
+
 def test_axe_finds_nothing_in_suites(page: Page, tmp_path: Path, data_dir: Path) -> None:
     assert data_dir.is_dir()
     assert cli.main(["suites", "etna", "-o", str(tmp_path / "out")]) == 0
@@ -115,9 +167,17 @@ def test_axe_finds_nothing_in_explore_and_its_sums_count_what_is_ticked(
     page = context.new_page()
     page.goto(server.address)
     page.wait_for_selector("body[data-ready]")
+    # On paper curves are as wide as their column, which is narrower than on the screen.
+    page.emulate_media(media="print")
+    page.evaluate("document.body.style.width = '680px'")
+    right = "Math.max(...[...document.querySelectorAll('canvas')].map(e => e.getBoundingClientRect().right))"
+    assert 600 < page.evaluate(right) <= 680
+    page.evaluate("document.body.style.width = ''")
+    page.emulate_media(media="screen")
     # Names for readers, and no values in the legend while the cursor is elsewhere.
     legend = page.locator("#plots .u-legend th").all_inner_texts()
-    assert {"living", "bedroom", "attic", "outdoors", "as described"} <= set(legend)
+    assert {"living", "bedroom", "outdoors", "as described"} <= set(legend)
+    assert "attic" not in legend
     values = page.locator("#plots .u-legend .u-value").all()
     assert not any(value.is_visible() for value in values)
     assert not page.locator("#plots .u-legend .u-series").first.is_visible()

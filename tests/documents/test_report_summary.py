@@ -70,6 +70,10 @@ def test_the_verdict_says_what_bands_hold_and_what_contradicts() -> None:
     assert good.startswith(fact["value"])
     assert good.startswith("76\u00a0% of the values of blind days lie in its prediction bands of 95\u00a0%")
     assert "no contradiction" in good
+    assert fact["note"].endswith("lowest: Room air, 61\u00a0%")
+    alike = {key: {**entry, "held": {"blind": 1.0}} for key, entry in band.items()}
+    [fact] = coverage_facts(study(parameters=fitted, band=alike, sensors=sensors))
+    assert fact["note"].endswith("all sensors")
     bad = summary.verdict(complete.model_copy(update={"contradictions": [NOTE, NOTE]}))[-1]
     assert "contradicts its data or what is known in 2 points" in bad
     assert "no contradiction" not in bad
@@ -123,6 +127,30 @@ def test_three_sheets_of_paper_and_a_short_page_on_a_telephone(page: Page, repor
         "document.querySelectorAll('section:has(> .appendix)').forEach(e => e.style.display = 'none')"
     )
     assert page.pdf(format="A4").count(b"/Type /Page\n") <= 3
+
+
+@pytest.mark.browser
+def test_nothing_of_the_first_pages_is_out_of_its_place(page: Page, report: Path) -> None:
+    page.goto(report.as_uri())
+    page.set_viewport_size({"width": 390, "height": 800})
+    # The mark of a folded part stands before its heading, also where that has two lines.
+    first = "e => [e.getBoundingClientRect().top, e.querySelector('h2').getClientRects()[0].top]"
+    for top, words in page.locator(".appendix > summary").evaluate_all(f"all => all.map({first})"):
+        assert words - top < 20.0
+    # What stands after a warning keeps its distance, and the intervals of parameters need no scrolling.
+    gaps = """all => all.filter(e => e.nextElementSibling).map(e =>
+      e.nextElementSibling.getBoundingClientRect().top - e.getBoundingClientRect().bottom)"""
+    assert min(page.locator(".banner").evaluate_all(gaps)) >= 8.0
+    table = page.locator(".scroll:has(.key-parameters)")
+    assert table.evaluate("e => e.scrollWidth <= e.clientWidth + 1")
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": 690, "height": 1000})
+    rules = "all => all.map(e => getComputedStyle(e).breakAfter)"
+    assert set(page.locator(".appendix > summary").evaluate_all(rules)) == {"avoid"}
+    page.evaluate("document.querySelectorAll('details').forEach(e => e.open = true)")
+    hashes = page.locator("td.hash, .hash code, .hash").evaluate_all("all => all.map(e => e.clientHeight)")
+    assert hashes
+    assert max(hashes) < 60
 
 
 @pytest.mark.browser

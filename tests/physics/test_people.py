@@ -145,5 +145,5 @@ def test_people_who_are_stated_in_one_section_alone_are_said() -> None:
         (line,) = [line for line in humidity_warnings(box(zones, humidity=humid)) if apart in line]
         assert "2400 W" in line
         assert "0 W" in line
-    assert any("of people at 120 W each, sensible part" in line for line in check(same))
-    assert any("of people at 120 W each, latent part" in line for line in check(same))
+    assert any("from people at 120 W each, sensible part" in line for line in check(same))
+    assert any("from people at 120 W each, latent part" in line for line in check(same))

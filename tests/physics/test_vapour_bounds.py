@@ -288,6 +288,8 @@ def test_the_warning_names_a_step_without_corrections() -> None:
     assert line.endswith("take a step of 12 min")
     assert "in 4 steps" in line
     assert not ledger.warnings(60.0)
+    [single] = VapourLedger(flows, 0.0, 1.0, 0.0, corrected=1, fastest=12.0 / 3600.0).warnings(3600.0)
+    assert "in one step: its humidity" in single
     assert VapourLedger.from_dict(ledger.to_dict()) == ledger
 
 

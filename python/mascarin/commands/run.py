@@ -352,9 +352,10 @@ def _print_warnings(building: Building, step: float, more: Sequence[str]) -> Non
     warnings += [f"warning: {line}" for line in more]
     for line in dict.fromkeys(warnings):
         print(line, file=sys.stderr)
-    assumed = sum(line.startswith("assumed: ") for line in lines)
+    assumed = sum(number.assumed for number in building.parameters())
     if assumed:
-        print(f"{assumed} assumed values: 'mascarin check' lists them", file=sys.stderr)
+        values = "one assumed value" if assumed == 1 else f"{assumed} assumed values"
+        print(f"{values}: 'mascarin check' lists {'it' if assumed == 1 else 'them'}", file=sys.stderr)
 
 
 def _print_cost(building: Building, simulation: Simulation) -> None:

@@ -137,4 +137,4 @@ def start_note(
     share = repeated / (repeated + steps)
     if raw["cycles"] < _MANY_CYCLES or share < _LARGE_SHARE:
         return note
-    return f"{note}: {share:.0%} of all steps of the run, which a given start (initial) saves"
+    return f"{note}: {100.0 * share:.0f} % of all steps of the run. A stated start (initial) would save them"

@@ -56,7 +56,7 @@ def test_a_given_start_saves_the_repetitions_of_a_heavy_building(
     Path("box.yaml").write_text(thick, encoding="utf-8")
     assert cli.main(call) == 0
     found = re.search(
-        r"repeated (\d+) times .*: (\d+)% of all steps of the run, which a given start",
+        r"repeated (\d+) times .*: (\d+) % of all steps of the run. A stated start",
         capsys.readouterr().out,
     )
     assert found

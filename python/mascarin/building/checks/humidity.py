@@ -134,7 +134,7 @@ def humidity_lines(building: Description) -> Iterator[str]:
     for name, zone in humidity.zones.items():
         for key, gain in zone.gains.items():
             words = f"{gain.power:g} W" if gain.power is not None else gain.in_words("kg/s")
-            people = "" if gain.activity is None else f" of people at {gain.activity:g} W each, latent part"
+            people = "" if gain.activity is None else f" from people at {gain.activity:g} W each, latent part"
             yield f"zone {name}: vapour of {key}, {words}{people}"
         for which in ("drying", "humidifying"):
             plant = getattr(zone, which)

@@ -135,7 +135,9 @@ def _in_zones(building: Description) -> Iterator[str]:
     heat = heat_capacity(building.site)
     for name, zone in building.zones.items():
         for key, gain in zone.gains.items():
-            people = "" if gain.activity is None else f" of people at {gain.activity:g} W each, sensible part"
+            people = (
+                "" if gain.activity is None else f" from people at {gain.activity:g} W each, sensible part"
+            )
             words = f"{gain.in_words('W')}{people}, {100 * gain.radiative:g} % radiated"
             yield f"zone {name}: gain {key} of {words}{_scheduled(gain.schedule)}"
         for key, air in zone.ventilation.items():
@@ -306,12 +308,8 @@ def _blinds(building: Description, ratings: Mapping[str, WindowRating]) -> Itera
         if blind is None:
             continue
         resistance = float(blind.resistance or 0.0) * float(blind.cover)
-        closed = f"as schedule {blind.schedule}" if blind.schedule else "always"
-        if blind.radiation is not None:
-            closed += f" above {blind.radiation:g} W/m2 on the window"
         yield (
-            f"window {name}: blind {blind.position}, closed {closed}, transmits "
-            f"{100 * blind.transmittance:g} % and reflects {100 * blind.reflectance:g} % of the sun; "
+            f"window {name}: blind {blind.words}; "
             f"U of the glass {rating.u_value:.2f} W/(m2 K) open, "
             f"{1.0 / (1.0 / rating.u_value + resistance):.2f} closed"
         )

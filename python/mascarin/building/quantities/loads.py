@@ -11,7 +11,7 @@ GainPower = Annotated[
     Number,
     Quantity(
         "W",
-        "Heat at a schedule of 1; negative: heat is taken away",
+        "Heat while the schedule is 1; negative: heat is taken away",
         Percent(30, "rated and actual power differ"),
         Limits(at_least=-1e7, at_most=1e7),
     ),

@@ -55,7 +55,7 @@ _FLOWS: Final = {
     "transmitted": "Sun through windows",
     "glass": "Through panes",
     "bridges": "Thermal bridges",
-    "sources": "Heat sources in surfaces",
+    "sources": "Heat sources in surfaces, and soil",
 }
 
 
@@ -234,9 +234,9 @@ def _figure(
         *[values for _, _, values, _, _ in thinned_curves], *_ends(thinned_curves, each), around=around
     )
     sign = units.shown(unit)
-    chart = Chart(
-        time_axis(index[0].to_pydatetime(), float(hours[-1])), y, width=720.0, height=230.0, y_label=sign
-    )
+    x = time_axis(index[0].to_pydatetime(), float(hours[-1]))
+    # Room for the unit above the highest mark and for the last date, in the large letters of a telephone too.
+    chart = Chart(x, y, width=720.0, height=246.0, y_label=sign, margin_top=36.0, margin_right=30.0)
     legend = []
     for number, (name, times, values, low, high) in enumerate(thinned_curves):
         look = "outdoors" if name == "outdoors" else f"s{number}"
@@ -248,8 +248,9 @@ def _figure(
         f"{name} {text.fixed(float(np.min(low)), 1)} to {text.fixed(float(np.max(high)), 1)} {sign}".strip()
         for name, _, _, low, high in thinned_curves
     )
-    step = float(hours[1] - hours[0]) * each
-    caption = f"Means of {text.significant(step)} h, with their range." if each > 1 else ""
+    caption = (
+        f"Means of {_duration(float(hours[1] - hours[0]) * each)}, with their range." if each > 1 else ""
+    )
     if left_out:
         caption = f"{caption} {left_out} more are in the table of all outputs.".strip()
     return {
@@ -258,6 +259,11 @@ def _figure(
         "keys": legend,
         "caption": caption,
     }
+
+
+def _duration(hours: float) -> str:
+    """A length of time: in minutes below an hour."""
+    return f"{text.significant(hours)} h" if hours >= 1.0 else f"{text.significant(60.0 * hours)} min"
 
 
 def _ends(thinned_curves: Sequence[tuple[str, Array, Array, Array, Array]], each: int) -> list[Array]:

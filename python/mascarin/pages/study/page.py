@@ -179,7 +179,8 @@ def coverage_facts(study: StudyDocument) -> list[dict[str, str]]:
     note = f"asked: {_percents(covered.asked)}; {period}, all sensors"
     if len(covered.shares) > 1:
         lowest = min(covered.shares, key=covered.shares.__getitem__)
-        note += f"; lowest: {label_of(study, lowest)}, {text.percent(covered.shares[lowest], 0)}"
+        if (share := text.percent(covered.shares[lowest], 0)) != text.percent(covered.share, 0):
+            note += f"; lowest: {label_of(study, lowest)}, {share}"
     return [_fact("Coverage of the prediction bands", text.percent(covered.share, 0), note)]
 
 

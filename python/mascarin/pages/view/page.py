@@ -113,6 +113,7 @@ def render(building: Building, step_seconds: float = 900.0) -> str:
             schematic=shown["schematic"],
             site=_site(building),
             most=_MAX_OPEN_ROWS,
+            assumed=sum(number.assumed for number in building.parameters()),
         )
     )
 

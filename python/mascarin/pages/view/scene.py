@@ -232,6 +232,7 @@ def _window(
             ("Solar transmittance", text.significant(rating.transmittance)),
             ("Area", text.with_unit(float(window.area or 0.0), "m2", 4)),
             *_frame(window),
+            *([] if window.blind is None else [("Blind", window.blind.words)]),
             *_direction(wall),
         ],
         "warnings": [line for key in keys for line in about.get(key, [])],

@@ -310,13 +310,13 @@
 
   const projected = new THREE.Vector3();
   function place() {
-    const wide = canvas.clientWidth, high = canvas.clientHeight;
     for (const { shown, place: where, className } of named) {
       projected.copy(where).project(camera);
       const on = className === "of-zone" ? $("show-labels").checked : $("show-sun").checked;
       shown.hidden = !on || projected.z > 1 || (className === "of-compass" && covered(where));
-      const x = (projected.x + 1) / 2 * wide, y = (1 - projected.y) / 2 * high;
-      shown.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      // Parts of the drawing, so that names are where they belong on paper, too.
+      shown.style.left = `${(50 * (projected.x + 1)).toFixed(2)}%`;
+      shown.style.top = `${(50 * (1 - projected.y)).toFixed(2)}%`;
     }
   }
 

@@ -76,9 +76,10 @@ class VapourLedger:
             longest = min(MOST_EXCHANGES / self.fastest, 0.99 * step_seconds) / 60.0
             better = next((step for step in STEPS if step <= longest), STEPS[-1])
             within = 1.0 / self.fastest / 60.0
+            steps = "one step" if self.corrected == 1 else f"{self.corrected} steps"
             text = (
                 f"the time step of {step_seconds / 60.0:g} min is too long for the vapour of the air, which "
-                f"was exchanged within {within:.2g} min in {self.corrected} steps: its humidity was kept "
+                f"was exchanged within {within:.2g} min in {steps}: its humidity was kept "
                 "between that of the air and of the surfaces that drive it, and is less accurate there; "
                 f"take a step of {better} min"
             )

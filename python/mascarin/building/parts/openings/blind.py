@@ -107,3 +107,15 @@ class Blind(Part):
         quantity = quantity_of(type(self).model_fields["resistance"])
         self._fill(resistance=Number(value, source=SHUTTER, derived=True, quantity=quantity))
         return self
+
+    @property
+    def words(self) -> str:
+        """Where it is, what closes it and what the closed blind does with the sun."""
+        closed = f"as schedule {self.schedule}" if self.schedule else "always"
+        if self.radiation is not None:
+            limit = f"above {self.radiation:g} W/m2 on the window"
+            closed = f"{closed} {limit}" if self.schedule else limit
+        return (
+            f"{self.position}, closed {closed}, transmits {100 * self.transmittance:g} % and reflects "
+            f"{100 * self.reflectance:g} % of the sun"
+        )
