@@ -91,6 +91,22 @@ COVERED: Final = """[...document.querySelectorAll('.series svg')].flatMap(svg =>
 })"""
 
 
+#: Names of marks that leave their drawing, where a telephone cuts them.
+CUT_NAMES: Final = """[...document.querySelectorAll('svg')].flatMap(svg => {
+  const edge = svg.getBoundingClientRect().right;
+  return [...svg.querySelectorAll('text.tick')].filter(e => e.getBoundingClientRect().right > edge + 1.5)
+    .map(e => e.textContent);
+})"""
+
+
+@pytest.mark.parametrize("kind", ["run", "design"])
+def test_no_name_of_a_mark_is_cut(page: Page, files: dict[str, Path], kind: str) -> None:
+    page.set_viewport_size({"width": 390, "height": 800})
+    page.goto(files[kind].as_uri())
+    assert page.evaluate("document.querySelectorAll('svg text.tick').length") > 5
+    assert page.evaluate(CUT_NAMES) == []
+
+
 @pytest.mark.parametrize("width", [1280, 390])
 def test_no_text_of_a_run_covers_another(page: Page, files: dict[str, Path], width: int) -> None:
     page.set_viewport_size({"width": width, "height": 800})

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import report_example
+from mascarin.pages.frame.template import asset
 from mascarin.pages.study import write
 from mascarin.pages.study.data.main_results import worst_sensor
 from mascarin.pages.study.page import _errors, coverage_facts
@@ -88,17 +89,22 @@ def test_steps_follow_from_bounds_misses_and_causes() -> None:
             parameters={"zones.room.infiltration": {"fitted": 0.0, "at_bound": True}},
             diagnosis={
                 "causes": [
-                    {"group": "data", "text": "50 repeated values are left out."},
+                    {"group": "data", "text": "50 repeated values; they are left out of all comparisons."},
+                    {
+                        "group": "data",
+                        "what": "clock",
+                        "text": "clock of the steel is 28 min late: check it.",
+                    },
                     {"group": "sensor", "text": "'room_air' reads 0.4 K too high."},
                 ]
             },
             shortfall={"steps": [{"path": "site.sky.a"}]},
         )
     )
-    assert [step.split()[0] for step in steps] == ["Room", "room", "Look", "Determine"]
+    assert [step.split()[0] for step in steps] == ["clock", "Room", "room", "Look", "Determine"]
     assert "left out" not in " ".join(steps)
-    assert "3.00 K, limit 1.00 K" in steps[2]
-    assert "at the end of the stated range" in steps[1]
+    assert "3.00 K, limit 1.00 K" in steps[3]
+    assert "at the end of the stated range" in steps[2]
 
 
 def test_each_criterion_has_its_cell() -> None:
@@ -130,8 +136,29 @@ def test_three_sheets_of_paper_and_a_short_page_on_a_telephone(page: Page, repor
 
 
 @pytest.mark.browser
-def test_nothing_of_the_first_pages_is_out_of_its_place(page: Page, report: Path) -> None:
-    page.goto(report.as_uri())
+def test_long_names_do_not_cover_the_bars_of_the_sensitivity(page: Page) -> None:
+    paths = [
+        "surfaces.facade.outside.convection.coefficient",
+        "surfaces." + "long_" * 12 + "wall.outside.emissivity",
+    ]
+    labels = {"sensor_info": {"s": {"label": "insulation/concrete interface", "unit": "degC"}}}
+    drawing = summary._sensitivity(study(sensitivity={"s": {p: {"share": 0.6} for p in paths}}, **labels))
+    page.set_content(f"<style>{asset('pages/frame/report.css')}</style><figure>{drawing}</figure>")
+    boxes = """tag => [...document.querySelectorAll(tag)].map(e => e.getBoundingClientRect())
+      .map(b => [b.left, b.right])"""
+    bars, texts = page.evaluate(boxes, "rect"), page.evaluate(boxes, "text")
+    names, words = texts[::2], texts[1::2]
+    assert len(bars) == len(names) == 2
+    for (left, right), (_, end), (start, edge) in zip(bars, names, words, strict=True):
+        assert end <= left < right <= start
+        assert edge <= page.evaluate("document.querySelector('svg').getBoundingClientRect().right")
+
+
+@pytest.mark.browser
+def test_nothing_of_the_first_pages_is_out_of_its_place(page: Page, tmp_path: Path) -> None:
+    raw, series = report_example.lgi()
+    raw["contradictions"] = [{"text": "a number is at its bound"}]
+    page.goto(write(tmp_path / "report.html", raw, series).as_uri())
     page.set_viewport_size({"width": 390, "height": 800})
     # The mark of a folded part stands before its heading, also where that has two lines.
     first = "e => [e.getBoundingClientRect().top, e.querySelector('h2').getClientRects()[0].top]"

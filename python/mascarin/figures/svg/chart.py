@@ -9,12 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 from markupsafe import Markup, escape
 
 from mascarin.figures import text
+
+#: Width of a letter of the name of a mark. [px]
+_LETTER: Final = 6.2
 
 Array = npt.NDArray[np.float64]
 Attribute = str | float | int
@@ -186,7 +190,11 @@ class Chart:
         for value, name in zip(self.x.ticks, self.x.names, strict=True):
             x = self.px(value)
             self.svg.line(x, bottom, x, bottom + 4, "tickmark")
-            self.svg.label(x, bottom + 15, name, "tick", "middle")
+            # A name that would leave the drawing ends with it.
+            beyond = x + 0.5 * _LETTER * len(name) > self.width
+            self.svg.label(
+                self.width if beyond else x, bottom + 15, name, "tick", "end" if beyond else "middle"
+            )
         self.svg.line(self.margin_left, bottom, self.width - self.margin_right, bottom, "axis")
         if self.y_label:
             self.svg.label(0, 11, self.y_label, "axis-label")

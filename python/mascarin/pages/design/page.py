@@ -191,6 +191,10 @@ def _fronts(results: DesignResults) -> list[dict[str, Any]]:
         if not (np.isfinite(x).any() and len(results.designs) > 1):
             continue
         axes = (_named(results, other), _named(results, first))
+        if np.nanmax(x) - np.nanmin(x) <= 1e-9 * np.nanmax(np.abs(x)):
+            alike = text.with_unit(float(np.nanmax(x)), results.inputs.objective(other).unit)
+            fronts.append({"title": f"{other}: {alike} in all designs", "drawing": "", "rows": []})
+            continue
         title = f"{first} and {other}, mean of the climates"
         rows = [
             {

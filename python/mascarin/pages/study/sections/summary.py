@@ -32,10 +32,12 @@ _LISTED: Final = 10
 _NAMED: Final = 4
 #: Steps that are named at most.
 _STEPS: Final = 5
-#: Width of the figure of sensitivity, its axis, and its longest bar. [px]
+#: Least width of the figure of sensitivity, its longest bar, and a letter of its names. [px]
 _WIDTH: Final = 520.0
-_AXIS: Final = 230.0
 _BAR: Final = 90.0
+_LETTER: Final = 6.2
+#: Letters of the longest name there; the table has names in full.
+_LETTERS: Final = 42
 #: Parameters in the figure of sensitivity.
 _BARS: Final = 8
 
@@ -187,7 +189,7 @@ def _unsound(study: StudyDocument) -> list[str]:
 
 def _causes(study: StudyDocument) -> list[str]:
     """The first causes of the diagnosis; what was left out of the data for its defects is none any more."""
-    causes = [c for c in study.diagnosis.causes if c.group != "data"]
+    causes = [c for c in study.diagnosis.causes if c.group != "data" or "left out" not in c.text]
     return [" ".join(note_words(study, cause)) for cause in causes[:2]]
 
 
@@ -328,15 +330,30 @@ def _sensitivity(study: StudyDocument) -> Markup | None:
         return None
     strongest = sorted(shares, key=lambda path: -shares[path][0])[:_BARS]
     height = 8.0 + 26.0 * len(strongest)
-    svg = Svg(_WIDTH, height)
     largest = max(shares[strongest[0]][0], 1e-9)
-    for row, path in enumerate(strongest):
-        share, sensor = shares[path]
+    bars = [
+        (
+            _shortened(parameter_label(study, path)),
+            max(_BAR * shares[path][0] / largest, 0.5),
+            f"{text.percent(shares[path][0], 0)}, {label_of(study, shares[path][1])}",
+        )
+        for path in strongest
+    ]
+    axis = 12.0 + _LETTER * max(len(name) for name, _, _ in bars)
+    width = max(axis + length + 12.0 + _LETTER * len(words) for _, length, words in bars)
+    svg = Svg(max(width, _WIDTH), height)
+    for row, (name, length, words) in enumerate(bars):
         y = 4.0 + 26.0 * row
-        svg.label(0.0, y + 16.0, parameter_label(study, path), "layer-name")
-        length = max(_BAR * share / largest, 0.5)
-        svg.add("rect", x=_AXIS, y=y + 4.0, width=length, height=16.0, class_="gain")
-        words = f"{text.percent(share, 0)}, {label_of(study, sensor)}"
-        svg.label(_AXIS + length + 6.0, y + 16.0, words, "layer-name")
-    svg.line(_AXIS, 0.0, _AXIS, height, "axis")
+        svg.label(0.0, y + 16.0, name, "layer-name")
+        svg.add("rect", x=axis, y=y + 4.0, width=length, height=16.0, class_="gain")
+        svg.label(axis + length + 6.0, y + 16.0, words, "layer-name")
+    svg.line(axis, 0.0, axis, height, "axis")
     return svg.markup("Largest sensitivity index of each parameter, and its sensor")
+
+
+def _shortened(name: str) -> str:
+    """A name of at most `_LETTERS` letters: its middle is left out."""
+    if len(name) <= _LETTERS:
+        return name
+    half = (_LETTERS - 3) // 2
+    return f"{name[:half]} … {name[-half:]}"
