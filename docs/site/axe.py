@@ -1,4 +1,4 @@
-"""Check every page of the built site with axe: ``python docs/site/axe.py target/site/html``.
+"""Check every page of the built site with axe: ``python docs/site/axe.py target/site/html [PAGE ...]``.
 
 Prints each page with a fault, and a page that is wider than the screen; the exit code is 1 if there is one.
 It needs Chromium (``MASCARIN_BROWSER``) and takes some seconds a page.
@@ -12,9 +12,11 @@ import sys
 from pathlib import Path
 from typing import Any, Final
 
-#: Width [px] and colors.
-LOOKS: Final[list[tuple[int, Any]]] = [(1280, "light"), (1280, "dark"), (390, "light"), (390, "dark")]
-
+#: Widths of a screen and of a telephone. [px]
+WIDTHS: Final = (1280, 390)
+SCHEMES: Final[tuple[Any, ...]] = ("light", "dark")
+#: Time in which colors fade from one scheme to the other. [ms]
+_FADES: Final = 500
 #: Opens what is folded, but no live example, which would load its page.
 _UNFOLD: Final = "document.querySelectorAll('details:not(.live-example)').forEach(d => d.open = true)"
 
@@ -26,6 +28,7 @@ def main() -> int:
 
     site = Path(sys.argv[1])
     pages = sorted(page for page in site.rglob("*.html") if "_static" not in page.parts)
+    pages = [page for page in pages if not sys.argv[2:] or page.stem in sys.argv[2:]]
     if not pages:
         sys.stderr.write(f"error: {site} has no pages: make docs\n")
         return 2
@@ -33,26 +36,26 @@ def main() -> int:
     faults = 0
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        for page, (width, scheme) in ((page, look) for page in pages for look in LOOKS):
-            context = browser.new_context(
-                offline=True, color_scheme=scheme, viewport={"width": width, "height": 800}
-            )
-            opened = context.new_page()
+        for page, width in ((page, width) for page in pages for width in WIDTHS):
+            # Loaded anew for each width: the theme decides then what can be scrolled by the keyboard.
+            opened = browser.new_page(viewport={"width": width, "height": 800}, offline=True)
             opened.goto(page.resolve().as_uri())
             opened.wait_for_load_state("load")
-            opened.evaluate(
-                "document.querySelectorAll('details:not(.live-example)').forEach(d => d.open = true)"
-            )
-            said = [
-                f"{fault['id']} ({fault['impact']}): {fault['nodes'][0]['target']}"
-                for fault in Axe().run(opened).response["violations"]
-            ]
-            wide = opened.evaluate("document.documentElement.scrollWidth")
-            said += [f"{wide} px wide"] if wide > width else []
-            for words in said:
-                sys.stdout.write(f"{page.relative_to(site)}, {width} px, {scheme}: {words}\n")
-            faults += len(said)
-            context.close()
+            opened.evaluate(_UNFOLD)
+            for scheme in SCHEMES:
+                opened.emulate_media(color_scheme=scheme)
+                opened.wait_for_timeout(_FADES)
+                said = [
+                    f"{fault['id']} ({fault['impact']}): {fault['nodes'][0]['target']}"
+                    for fault in Axe().run(opened).response["violations"]
+                ]
+                wide = opened.evaluate("document.documentElement.scrollWidth")
+                said += [f"{wide} px wide"] if wide > width else []
+                for words in said:
+                    sys.stdout.write(f"{page.relative_to(site)}, {width} px, {scheme}: {words}\n")
+                    sys.stdout.flush()
+                faults += len(said)
+            opened.close()
     sys.stdout.write(f"{len(pages)} pages, {faults} faults\n")
     return 1 if faults else 0
 

@@ -38,7 +38,7 @@ class SolverError(MascarinError):
     exit_code = 3
 
 
-def did_you_mean(name: str, names: Iterable[str]) -> str:
+def did_you_mean(name: str, names: Iterable[str], *, known: bool = True) -> str:
     """Sentence that helps with a name that is not known.
 
     Parameters
@@ -47,6 +47,8 @@ def did_you_mean(name: str, names: Iterable[str]) -> str:
         The name as it was given.
     names : iterable of str
         The names that would have been understood.
+    known : bool
+        Whether a short list may be given in full: not where the message has it already.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def did_you_mean(name: str, names: Iterable[str]) -> str:
     close = difflib.get_close_matches(str(name), sorted_names, n=3, cutoff=0.6)
     if close:
         return f"Did you mean {_either(close)}?"
-    if sorted_names and len(sorted_names) <= 20:
+    if known and sorted_names and len(sorted_names) <= 20:
         return f"Known: {', '.join(sorted_names)}."
     return ""
 

@@ -25,6 +25,8 @@ def test_two_close_names_are_joined() -> None:
 
 def test_a_short_list_is_shown_whole_and_sorted() -> None:
     assert did_you_mean("xyz", ["tanh", "table"]) == "Known: table, tanh."
+    assert did_you_mean("xyz", ["tanh", "table"], known=False) == ""  # the message has them
+    assert did_you_mean("tabel", ["tanh", "table"], known=False) == "Did you mean 'table'?"
 
 
 def test_a_long_list_is_not_shown() -> None:

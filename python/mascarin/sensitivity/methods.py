@@ -73,7 +73,7 @@ def plan(
     """
     if method not in METHODS:
         msg = f"method: found '{method}', expected one of {', '.join(METHODS)}. "
-        raise InputError(msg + did_you_mean(method, METHODS))
+        raise InputError(f"{msg}{did_you_mean(method, METHODS, known=False)}".rstrip())
     whole_number("replicates", replicates)
     whole_number("seed", seed)
     if samples is not None:

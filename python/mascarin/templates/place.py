@@ -43,7 +43,7 @@ def _weather(name: str) -> tuple[str, str]:
         return name, re.sub(r"[^\w .-]", " ", Path(name).stem)
     raise InputError(
         f"--place: found '{name}'; expected one of {', '.join(SHIPPED)}, or the path of an EPW file. "
-        f"{did_you_mean(name, SHIPPED)}".rstrip()
+        f"{did_you_mean(name, SHIPPED, known=False)}".rstrip()
     )
 
 

@@ -135,5 +135,5 @@ def _require(option: str, value: str, allowed: Sequence[str]) -> None:
     if value not in allowed:
         raise InputError(
             f"{option}: found '{value}'; expected one of {', '.join(allowed)}. "
-            f"{did_you_mean(value, allowed)}".rstrip()
+            f"{did_you_mean(value, allowed, known=False)}".rstrip()
         )

@@ -154,7 +154,9 @@ def window_of(text: str) -> WindowText:
     if not colon or wall not in WALLS:
         raise InputError(
             f"--window: found '{text}'; expected a wall and a size, such as south:1.2x1.0, with one of "
-            f"{', '.join(WALLS)}. {'' if wall in WALLS else did_you_mean(wall, WALLS)}".rstrip(" ")
+            f"{', '.join(WALLS)}. {'' if wall in WALLS else did_you_mean(wall, WALLS, known=False)}".rstrip(
+                " "
+            )
         )
     width, height = _lengths(size, 2, "--window", "width x height in m, such as south:1.2x1.0")
     return WindowText(wall, width, height)
@@ -210,9 +212,10 @@ def _layer(text: str, option: str) -> LayerText:
             raise InputError(_no_thickness(text, stem, option))
         if entry is None:
             names = [*common_materials(), *product]
+            closest = did_you_mean(name, names, known=False)
             raise InputError(
                 f"{option}: found no material '{name}'; expected a product that 'mascarin materials' lists, "
-                f"or one of {', '.join(common_materials())}. {did_you_mean(name, names)}".rstrip()
+                f"or one of {', '.join(common_materials())}. {closest}".rstrip()
             )
         material, typical = entry
     thickness, assumed = _thickness(text, number, unit, typical, option)

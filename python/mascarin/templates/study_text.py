@@ -89,7 +89,7 @@ class LoggerRecord:
         if column not in self.columns:
             raise InputError(
                 f"{option}: found no column '{column}' in {self.path.name}; expected one of "
-                f"{', '.join(self.columns)}. {did_you_mean(column, self.columns)}".rstrip()
+                f"{', '.join(self.columns)}. {did_you_mean(column, self.columns, known=False)}".rstrip()
             )
         return column
 

@@ -160,7 +160,7 @@ class MonthlyChanges:
             if name != "month" and name not in columns:
                 raise InputError(
                     f"{path}:1: found the column '{name}'; expected month and some of {', '.join(columns)}. "
-                    f"{did_you_mean(name, columns)}".rstrip()
+                    f"{did_you_mean(name, columns, known=False)}".rstrip()
                 )
         months = sorted(table["month"].tolist()) if "month" in table else []
         if months != list(range(1, 13)):

@@ -119,7 +119,7 @@ def _checked(shared: Any) -> dict[str, Mapping[str, Any]]:
         if key not in sections:
             raise InputError(
                 f"{DEFAULTS}: found the key '{key}'; expected one of {', '.join(sections)}. "
-                f"{did_you_mean(str(key), sections)}".rstrip()
+                f"{did_you_mean(str(key), sections, known=False)}".rstrip()
             )
         if not isinstance(value, Mapping):
             raise InputError(

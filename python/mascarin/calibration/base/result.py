@@ -315,7 +315,7 @@ class Calibration:
         if kind not in KINDS:
             raise InputError(
                 f"kind: found '{kind}', expected one of {', '.join(KINDS)}. "
-                f"{did_you_mean(kind, KINDS)}".rstrip()
+                f"{did_you_mean(kind, KINDS, known=False)}".rstrip()
             )
         axes = _new_axes() if ax is None else ax
         problem, names = self.problem, self.problem.paths

@@ -161,10 +161,10 @@ def _solved(
 
 def _require(method: str, cost: str, confidence: float, own_cost: bool) -> None:
     if method not in METHODS:
-        msg = (
-            f"method: found '{method}', expected one of {', '.join(METHODS)}. {did_you_mean(method, METHODS)}"
+        closest = did_you_mean(method, METHODS, known=False)
+        raise InputError(
+            f"method: found '{method}', expected one of {', '.join(METHODS)}. {closest}".rstrip()
         )
-        raise InputError(msg)
     if method in WITH_SQUARES and cost != "nll" and not own_cost:
         msg = f"{method} minimizes 'nll'; for the cost '{cost}' use a method such as 'hooke-jeeves'"
         raise InputError(msg)

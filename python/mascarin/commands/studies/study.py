@@ -193,7 +193,7 @@ def validate(
     if as_json:
         print_json(content.to_dict())
     else:
-        _print_scores(content)
+        _print_scores(content.without_repeated_periods())
     return _exit_code(_verdicts(content, "nominal"), _of_the_runs(content), sound=_sound(content))
 
 

@@ -22,7 +22,7 @@ def require_zone(building: Building, zone: str) -> None:
     if zone not in building.zones:
         raise InputError(
             f"found the zone '{zone}', expected one of {', '.join(building.zones)}. "
-            f"{did_you_mean(zone, building.zones)}".rstrip()
+            f"{did_you_mean(zone, building.zones, known=False)}".rstrip()
         )
 
 
@@ -96,7 +96,7 @@ def require_layer(building: Building, layer: str, *, melts: bool) -> None:
         raise InputError(
             f"found '{layer}', expected SURFACE.LAYER with one of the surfaces "
             f"{', '.join(building.surfaces)}. "
-            f"{did_you_mean(surface, building.surfaces)}".rstrip()
+            f"{did_you_mean(surface, building.surfaces, known=False)}".rstrip()
         )
     construction = building.surfaces[surface].construction
     layers = {entry.name: entry for entry in building.constructions[construction].layers}
@@ -104,7 +104,7 @@ def require_layer(building: Building, layer: str, *, melts: bool) -> None:
         raise InputError(
             f"found '{layer}', but construction '{construction}' of this surface has the layers "
             f"{', '.join(map(str, layers))}; expected one of them. "
-            f"{did_you_mean(name, list(map(str, layers)))}".rstrip()
+            f"{did_you_mean(name, list(map(str, layers)), known=False)}".rstrip()
         )
     material = building.materials[layers[name].material]
     if melts and material.kind != "pcm":

@@ -174,7 +174,7 @@ def chosen(name: str, parameters: int) -> Algorithm:
     if name not in by_name:
         raise InputError(
             f"--algorithm: found '{name}', expected one of {', '.join(ALGORITHMS)}, or GenOpt's own name. "
-            f"{did_you_mean(name, by_name)}".rstrip()
+            f"{did_you_mean(name, by_name, known=False)}".rstrip()
         )
     algorithm = by_name[name]
     if algorithm.single and parameters != 1:

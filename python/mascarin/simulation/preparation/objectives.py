@@ -157,5 +157,5 @@ def series_of(series: Mapping[str, Array], output: str) -> Array:
     except KeyError:
         raise InputError(
             f"objective: there is no output {output!r}; expected one of those recorded: "
-            f"{', '.join(series)}. {did_you_mean(output, list(series))}".rstrip()
+            f"{', '.join(series)}. {did_you_mean(output, list(series), known=False)}".rstrip()
         ) from None

@@ -109,7 +109,7 @@ class RunOptions:
         if self.scheme not in SCHEMES:
             raise InputError(
                 f"scheme: found '{self.scheme}', expected one of {', '.join(SCHEMES)}. "
-                f"{did_you_mean(self.scheme, SCHEMES)}".rstrip()
+                f"{did_you_mean(self.scheme, SCHEMES, known=False)}".rstrip()
             )
         if self.outputs is not None:
             listed = names_of("outputs", self.outputs, such_as="'room.air_temperature'")
@@ -145,7 +145,7 @@ def require_precision(precision: str, scheme: str) -> None:
     if precision not in PRECISIONS:
         raise InputError(
             f"precision: found '{precision}', expected one of {', '.join(PRECISIONS)}. "
-            f"{did_you_mean(precision, PRECISIONS)}".rstrip()
+            f"{did_you_mean(precision, PRECISIONS, known=False)}".rstrip()
         )
     if precision == "single" and scheme == "apparent-capacity":
         raise InputError(

@@ -176,6 +176,6 @@ def chosen(names: tuple[str, ...]) -> list[Suite]:
         if name not in catalogue:
             raise InputError(
                 f"suites: found '{name}', expected one of {', '.join(catalogue)}. "
-                f"{did_you_mean(name, catalogue)}".rstrip()
+                f"{did_you_mean(name, catalogue, known=False)}".rstrip()
             )
     return [catalogue[name] for name in dict.fromkeys(names)] if names else list(catalogue.values())
