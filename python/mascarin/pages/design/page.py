@@ -184,7 +184,7 @@ def _fronts(results: DesignResults) -> list[dict[str, Any]]:
     names = list(results.inputs.file.objectives)
     first = results.ranked_by
     winners = results.winners()
-    fronts = []
+    fronts: list[dict[str, Any]] = []
     for other in [name for name in names if name != first]:
         front = results.front([first, other])
         x, y = results.values(other), results.values(first)

@@ -55,7 +55,7 @@ class RunSeries(xr.DataArray):  # type: ignore[no-untyped-call]
             raise
 
 
-class RunDataset(xr.Dataset):
+class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
     """Series over ``time`` (UTC), with the coordinate ``local_time`` and the attribute ``timezone``.
 
     `sel`, of the data set and of its series, takes times as that of `RunSeries` does.
