@@ -405,9 +405,9 @@ def assumptions(building: Description) -> Iterator[str]:
             section, name, *keys = number.path.split(".")
             value = f"{number.value:g}{unit} ({number.source or 'no source'})"
             names.setdefault((section, "".join(f".{key}" for key in keys), value), []).append(name)
-    for (section, rest, value), alike in names.items():
+    for (section, tail, value), alike in names.items():
         name = alike[0] if len(alike) == 1 else f"{{{', '.join(alike)}}}"
-        yield f"{section}.{name}{rest} = {value}"
+        yield f"{section}.{name}{tail} = {value}"
     outdoors = [item.side for item in every_side(building) if item.side.outdoors]
     if outdoors and "sky" not in building.site.model_fields_set:
         yield "site.sky: infrared of the weather file, else martin_berdahl, because none is given"
