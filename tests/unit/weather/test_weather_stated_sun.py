@@ -155,3 +155,12 @@ def test_an_epw_file_has_no_position(tmp_path: Path) -> None:
     )  # fmt: skip
     with pytest.raises(InputError, match="which an EPW file cannot have"):
         write_epw(climate, tmp_path / "a.epw")
+
+
+def test_a_run_says_its_warnings_about_the_sun_without_the_word() -> None:
+    """The terminal writes `warning:` before each of them."""
+    climate = read(table(B=np.full(72, 800.0), h=np.full(72, 30.0), a=np.full(72, 180.0)))
+    run = mc.simulate(parse(BOX, "box.yaml"), climate, start="2001-06-20", end="2001-06-21", initial=20.0)
+    (said,) = (text for text in run.warnings if "deg away" in text)
+    assert said.startswith("table: the position of the sun")
+    assert any(": warning: the position" in note for note in climate.completed(SITE).provenance)

@@ -20,7 +20,7 @@ from mascarin.weather.derived import sun as sun_module
 from mascarin.weather.derived.sun import SunPath
 from mascarin.weather.derived.sun_position import Sun, angle_from_path, states_position, sun_over
 from mascarin.weather.records.channels import RADIATION, SUN_POSITION
-from mascarin.weather.records.record import WeatherRecord
+from mascarin.weather.records.record import WeatherRecord, plain_warning
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -108,7 +108,7 @@ def sun_warnings(record: WeatherRecord, latitude: float, longitude: float) -> tu
         Positive north and east. [deg]
     """
     clock = check_clock(record, latitude, longitude) if record.check_sun else ()
-    return (*findings(record, latitude, longitude), *clock)
+    return (*findings(record, latitude, longitude), *(plain_warning(text) for text in clock))
 
 
 def _shift_findings(record: WeatherRecord, latitude: float, longitude: float) -> list[str]:
