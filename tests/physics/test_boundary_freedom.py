@@ -174,3 +174,34 @@ def test_a_zone_of_air_alone() -> None:
     assert results.energy.closure < 1e-9
     with pytest.raises(InputError, match=r"0\.3 in a zone that no surface faces"):
         building.replace({"zones.plenum.gains.fan.radiative": 0.3})
+
+
+@pytest.mark.parametrize("step", ["15min", "5min"])
+def test_means_of_hours_as_set_points_and_boundaries(step: str) -> None:
+    """The air, joined by straight lines, has the means of the table; so has the heat through the wall."""
+    count = 240
+    random = np.random.default_rng(1).normal(size=count)
+    frame = pd.DataFrame(
+        {
+            "T": 10.0, "yard": 5.0 + 4.0 * random, "inner": 18.0 + 3.0 * (np.arange(count) % 24 > 8),
+        },
+        index=pd.date_range("2001-01-01", periods=count, freq="1h"),
+    )  # fmt: skip
+    climate = Climate.from_table(
+        frame, timezone="UTC", columns={"air_temperature": "T"}, extra=["yard", "inner"],
+        mean=["yard", "inner"], absent=["dew_point", "wind_speed", "wind_direction", "radiation"],
+    )  # fmt: skip
+    same = {"setpoint": {"column": "inner"}}
+    building = box({"room": {"heating": same, "cooling": same}})
+    names = ["room.air_temperature", "wall_room.outside_temperature", "room.net_load"]
+    results = simulate(building, climate, step=step, outputs=names)
+    air = results["room.air_temperature"].to_numpy()
+    count_an_hour = (len(air) - 1) // count
+    hourly = (0.5 * (air[1:] + air[:-1])).reshape(count, count_an_hour).mean(axis=1)
+    # The first hour begins with the air of the periodic start.
+    assert hourly[1:] == pytest.approx(frame["inner"].to_numpy()[1:], abs=1e-9)
+    # Of days, the mean load is that of the mean temperatures through films and 0.1 m of foam.
+    conductance = 30.0 / (1.0 / 20.0 + 0.1 / 0.04 + 1.0 / 4.0)
+    load = results["room.net_load"].to_numpy()[1:].mean()
+    expected = conductance * (frame["inner"].mean() - frame["yard"].mean())
+    assert load == pytest.approx(expected, rel=0.01)

@@ -12,6 +12,7 @@ from mascarin.building import Building
 from mascarin.building.reading import parse
 from mascarin.weather import Climate
 from test_building_sun_and_films import BOX
+from test_measured_obstacles import EDGE, strip, weather
 
 SUN = ["sun_altitude", "sun_azimuth"]
 
@@ -89,3 +90,14 @@ def test_slopes_of_the_beam_by_a_tilt_agree_with_differences() -> None:
     high, low = (simulation.run({path: 90.0 + sign * 1e-3})[name].to_numpy() for sign in (1, -1))
     assert np.abs(slope).max() > 1.0
     assert slope == pytest.approx((high - low) / 2e-3, abs=1e-3 * np.abs(slope).max())
+
+
+def test_views_are_those_past_obstacles() -> None:
+    """An endless overhang leaves ``cos(edge)/2`` of the sky, and all of the ground; a stated view stays."""
+    names = ["wall.sky_view_factor", "wall.ground_view_factor"]
+    options: dict[str, Any] = {"step": "1h", "initial": 15.0, "outputs": names}
+    run = mc.simulate(strip(), weather(0.0, 100.0), **options)
+    assert run[names[0]].to_numpy() == pytest.approx(0.5 * np.cos(EDGE), rel=5e-3)
+    assert run[names[1]].to_numpy() == pytest.approx(0.5, abs=1e-12)
+    stated = mc.simulate(strip({"sky_view": 0.31}), weather(0.0, 100.0), **options)
+    assert stated[names[0]].to_numpy() == pytest.approx(0.31, abs=1e-12)

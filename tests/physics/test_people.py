@@ -147,3 +147,27 @@ def test_people_who_are_stated_in_one_section_alone_are_said() -> None:
         assert "0 W" in line
     assert any("from people at 120 W each, sensible part" in line for line in check(same))
     assert any("from people at 120 W each, latent part" in line for line in check(same))
+
+
+def test_people_with_two_schedules_are_said() -> None:
+    """The same power by other hours; schedules of other names with the same values are the same."""
+    schedules = {
+        name: {"kind": "fraction", "days": {"all": [{"at": "00:00", "value": 0}, {"at": hour, "value": 1}]}}
+        for name, hour in (("office", "08:00"), ("work", "08:00"), ("night", "20:00"))
+    }
+    apart = "do not come at the same time"
+
+    def said(heat: str | None, vapour: str | None) -> list[str]:
+        people = {"power": POWER, "activity": ACTIVITY}
+        zones, humid = (
+            {"room": {"gains": {"people": people if name is None else people | {"schedule": name}}}}
+            for name in (heat, vapour)
+        )
+        building = box(zones, humidity={"zones": humid}, schedules=schedules)
+        return [line for line in humidity_warnings(building) if apart in line]
+
+    assert said("office", "office") == said(None, None) == said("office", "work") == []
+    (line,) = said("office", "night")
+    assert "(night, office)" in line
+    (line,) = said("office", None)
+    assert "(no schedule, office)" in line

@@ -14,7 +14,7 @@ from mascarin.physics import STANDARD_PRESSURE, humidity_of_dew_point, humidity_
 from mascarin.tables.arrays import Array
 from mascarin.tables.grid import values_in
 from mascarin.tables.times import epoch_seconds, stamps_of
-from mascarin.weather.forcing import window
+from mascarin.weather.records.window import window
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,6 +10,8 @@ import numpy as np
 from mascarin._io import atomic
 from mascarin.errors import InputError
 from mascarin.physics import humidity_of_dew_point
+from mascarin.weather.derived.sun_position import states_position
+from mascarin.weather.records.channels import SUN_POSITION
 
 if TYPE_CHECKING:
     from mascarin.weather.climate import Climate
@@ -49,7 +51,7 @@ def write_epw(climate: Climate, path: str | Path) -> None:
     Raises
     ------
     InputError
-        The climate is no whole year of hours, or its site is not known.
+        The climate is no whole year of hours, its site is not known, or it states the position of the sun.
 
     Examples
     --------
@@ -69,6 +71,12 @@ def write_epw(climate: Climate, path: str | Path) -> None:
         raise InputError(
             f"{climate.file}: found {'no site' if is_full_year else grid.span()}; expected a climate of one "
             "calendar year of hours, from 1 January 00:00 on, with its site"
+        )
+    if states_position(climate.record):
+        raise InputError(
+            f"{climate.file}: found the position of the sun in the columns {' and '.join(SUN_POSITION)}, "
+            "which an EPW file cannot have; expected a climate without them. Read the table "
+            "without these columns"
         )
     columns = {name: _ending(climate, name) for name in climate.data.columns if name in _FIELDS}
     if {"air_temperature", "dew_point"} <= columns.keys():

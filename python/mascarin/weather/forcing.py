@@ -11,17 +11,25 @@ import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Flags
-from mascarin.tables.checks import require_range, require_values
-from mascarin.tables.grid import Grid, values_in
+from mascarin.tables.checks import require_range
+from mascarin.tables.grid import Grid
 from mascarin.tables.profile import PiecewiseProfile, pieces_for, steady
 from mascarin.tables.record import Record
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import clock
 from mascarin.weather.derived.radiation import from_instants, from_means
-from mascarin.weather.derived.sun import SunPath
-from mascarin.weather.records.channels import BY_NAME, CHANNELS, RADIATION, SOURCE_CHANNELS, UNITS
+from mascarin.weather.derived.sun_position import Sun, sun_over
+from mascarin.weather.records.channels import (
+    BY_NAME,
+    CHANNELS,
+    RADIATION,
+    SOURCE_CHANNELS,
+    SUN_POSITION,
+    UNITS,
+)
 from mascarin.weather.records.record import WeatherRecord
 from mascarin.weather.records.site import SiteLike
+from mascarin.weather.records.window import window
 
 
 def require_period(record: WeatherRecord, steps: Steps) -> None:
@@ -41,7 +49,7 @@ def require_period(record: WeatherRecord, steps: Steps) -> None:
     """
     hint = " (in Python, if it is a typical year: typical=True)" if record.of_year else ""
     record.grid.require(steps.first, steps.last, record.file, hint)
-    for name in SOURCE_CHANNELS:
+    for name in (*SOURCE_CHANNELS, *SUN_POSITION):
         if name in record.columns:
             require_range(
                 record, name, (BY_NAME[name].low, BY_NAME[name].high), steps.first, steps.last, UNITS[name]
@@ -113,7 +121,7 @@ def _fill_at_place(out: Array, completed: WeatherRecord, site: SiteLike, steps: 
     if _LAST and _LAST[0].record is completed and _LAST[0].key == key:
         out[...] = _LAST[0].values
         return
-    sun = sun_over(latitude, longitude, completed.grid.interval, steps)
+    sun = sun_over_steps(completed, latitude, longitude, steps)
     # In blocks, so that what is worked out on the way takes no memory beside the result.
     for row in range(0, len(steps.stage), _ROWS):
         block = slice(row, row + _ROWS)
@@ -125,10 +133,10 @@ def _fill_at_place(out: Array, completed: WeatherRecord, site: SiteLike, steps: 
         _LAST[:] = [_Kept(completed, key, out.copy())]
 
 
-def sun_over(latitude: float, longitude: float, interval: float, steps: Steps) -> SunPath:
-    """The sun over a period and what lies around it of a record with intervals of a length. [deg, s]"""
-    reach = 5.0 * interval + 3600.0
-    return SunPath.over(latitude, longitude, steps.first - reach, steps.last + reach, steps.first)
+def sun_over_steps(record: WeatherRecord, latitude: float, longitude: float, steps: Steps) -> Sun:
+    """The sun over a period and what lies around it in a record. [deg]"""
+    reach = 5.0 * record.grid.interval + 3600.0
+    return sun_over(record, latitude, longitude, (steps.first - reach, steps.last + reach), steps.first)
 
 
 @dataclass(frozen=True)
@@ -147,7 +155,7 @@ _ROWS: Final = 2**15
 _MOST_KEPT: Final = 16 * 2**20
 
 
-def _fill_sun(out: Array, sun: SunPath, stage: Array, origin: float, grid: Grid) -> None:
+def _fill_sun(out: Array, sun: Sun, stage: Array, origin: float, grid: Grid) -> None:
     """Extraterrestrial irradiance, sun vector and day of the year."""
     out[..., CHANNELS.index("direct_normal_extra")] = sun.normal_irradiance(stage)
     east = CHANNELS.index("sun_east")
@@ -256,55 +264,7 @@ def column_values(record: Record, name: str, steps: Steps) -> Array:
     return result % 360.0 if name == "wind_direction" else result
 
 
-def window(record: Record, name: str, first: float, last: float) -> tuple[float, Array, str]:
-    """Values of a column over a span and a little more.
-
-    Parameters
-    ----------
-    record : Record
-        Where the column is.
-    name : str
-        Column.
-    first, last : float
-        Span, seconds since 1970-01-01 UTC [s].
-
-    Returns
-    -------
-    start : float
-        Start of the first interval [s].
-    values : ndarray
-        Instants at both ends of all intervals, or means.
-    kind : str
-        `instant` or `mean`.
-
-    Raises
-    ------
-    InputError
-        A value that the span needs is missing.
-    """
-    kind = record.kinds[name]
-    start, rows = record.grid.rows(first, last)
-    values = values_in(record.columns[name], record.closing.get(name, np.nan), rows, kind)
-    gaps = np.isnan(values)
-    if gaps.any():
-        require_values(record, name, start, rows, gaps, first, last)
-        values = _held(values)
-    return start, values, kind
-
-
-def _held(values: Array) -> Array:
-    """Gaps in the margin take the nearest value."""
-    good = np.flatnonzero(~np.isnan(values))
-    if not len(good):
-        return np.zeros_like(values)
-    row = np.arange(len(values))
-    after = np.clip(np.searchsorted(good, row), 0, len(good) - 1)
-    before = np.clip(after - 1, 0, len(good) - 1)
-    nearer = np.abs(good[before] - row) <= np.abs(good[after] - row)
-    return values[np.where(nearer, good[before], good[after])]
-
-
-def fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps) -> None:
+def fill_radiation(out: Array, record: WeatherRecord, sun: Sun, steps: Steps) -> None:
     """Write the short-wave channels at the stages of every step.
 
     Parameters
@@ -313,7 +273,7 @@ def fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps
         Changed in place; its sun is there already. [unit of each channel]
     record : WeatherRecord
         With all irradiances.
-    sun : SunPath
+    sun : Sun
         The sun over the period and five intervals around it, its times counted from the start.
     steps : Steps
         The period.

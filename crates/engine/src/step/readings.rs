@@ -102,10 +102,13 @@ impl<S: Real> Readings<'_, S> {
         position(self.weather.conditions.sun.direction)
     }
 
-    /// Fractions of sky and ground that a surface sees [-]; zeros where it does not face outdoors.
+    /// Fractions of sky and ground that a surface sees past all obstacles [-]; zeros where it does not face outdoors.
     pub(crate) fn views(&self, surface: SideId) -> [S; 2] {
+        let open = self.model.plan.solar_geometry.visibility(surface, &[]);
         match &self.model.coefficients.surfaces[surface].boundary {
-            Boundary::Outdoors(outdoors) => [outdoors.plane.sky_view, outdoors.plane.ground_view],
+            Boundary::Outdoors(outdoors) => {
+                [outdoors.plane.sky_view.scale(open.sky), outdoors.plane.ground_view.scale(open.ground)]
+            }
             _ => [S::zero(); 2],
         }
     }

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
 from mascarin.building.base.leaves import leaves
 from mascarin.building.base.number import quantity_of
 from mascarin.building.base.part import fault
 from mascarin.building.parameters.set_point_pairs import first_crossing
-from mascarin.building.parts.air.humidity import CoolingCoil, Humidistat, Humidity, ZoneHumidity
+from mascarin.building.parts.air.humidity import (
+    CoolingCoil,
+    Humidistat,
+    Humidity,
+    VapourGain,
+    ZoneHumidity,
+)
+from mascarin.building.parts.air.zone import Gain
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.moisture_surfaces import vapour_sides
 from mascarin.errors import did_you_mean
@@ -27,6 +34,8 @@ _NAMED = 6
 #: Difference of the heat of people in two sections that is none: enthalpies of vapour, by which programs
 #: divide latent heat, differ from 2.45 to 2.55 MJ/kg. [-]
 _SAME_PEOPLE: Final = 0.05
+#: What gains without a schedule follow.
+_ALWAYS: Final = "no schedule"
 
 
 def humidity_faults(building: Description) -> Faults:
@@ -186,6 +195,35 @@ def _people_differ(building: Description, humidity: Humidity) -> Iterator[str]:
                 f"humidity.zones.{name}.gains: their sensible heat and their vapour do not belong together. "
                 "State the same power and activity in both"
             )
+            continue
+        courses = [_people_by_schedule(building, gains) for gains in (zone.gains.values(), sources)]
+        different = [
+            schedule
+            for schedule in sorted({*courses[0], *courses[1]})
+            if abs(courses[0].get(schedule, 0.0) - courses[1].get(schedule, 0.0)) > _SAME_PEOPLE * heat
+        ]
+        if different:
+            yield (
+                f"zone {name}: people follow other schedules in zones.{name}.gains than in "
+                f"humidity.zones.{name}.gains ({_listed(different)}): their sensible heat and their vapour "
+                "do not come at the same time. State the same schedule in both"
+            )
+
+
+def _people_by_schedule(building: Description, gains: Iterable[Gain | VapourGain]) -> dict[str, float]:
+    """Heat of people by what they follow. [W]"""
+    heat: dict[str, float] = {}
+    for gain in gains:
+        if gain.activity is None:
+            continue
+        course = _ALWAYS if gain.schedule is None else _first_alike(building, gain.schedule)
+        heat[course] = heat.get(course, 0.0) + float(gain.power or 0.0)
+    return heat
+
+
+def _first_alike(building: Description, name: str) -> str:
+    """The first schedule of a building with the values of another one."""
+    return next(other for other, course in building.schedules.items() if course == building.schedules[name])
 
 
 def _listed(names: list[str]) -> str:

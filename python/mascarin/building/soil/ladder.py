@@ -127,26 +127,31 @@ def _space(volumes: FiniteVolumes, rates: Array) -> tuple[Array, Array]:
     Its fields have a heat content of one, and none in common (Gram and Schmidt, twice). The steady one
     comes beside.
     """
-    capacities = volumes.capacities
-    fields: list[Array] = []
-    steady = np.zeros(0)
+    # Times the root of the heat capacity, fields without a common heat content are at right angles.
+    root = np.sqrt(volumes.capacities)
+    scaled = np.zeros((len(root), len(rates)), order="F")
+    conduction = np.zeros((len(rates), len(rates)))
+    count, steady = 0, np.zeros(0)
     for rate in map(float, rates):
+        known = scaled[:, :count]
         guess = None
-        if fields:
+        if count:
             # The best combination of the fields so far.
-            space = np.column_stack(fields)
-            matrix = space.T @ volumes.image(space) + rate * np.eye(space.shape[1])
-            guess = space @ np.linalg.solve(matrix, space.T @ volumes.inside)
+            matrix = conduction[:count, :count] + rate * np.eye(count)
+            guess = known @ np.linalg.solve(matrix, known.T @ (volumes.inside / root)) / root
         field = volumes.solve(volumes.inside, rate, guess)
         steady = field if rate == 0.0 else steady
-        size = float(np.sqrt(capacities @ field**2))
+        field = root * field
+        size = float(np.linalg.norm(field))
         for _ in range(2):
-            for other in fields:
-                field = field - float(other @ (capacities * field)) * other
-        length = float(np.sqrt(capacities @ field**2))
+            field -= known @ (known.T @ field)
+        length = float(np.linalg.norm(field))
         if length > _DEPENDENT * size:
-            fields.append(field / length)
-    return np.column_stack(fields), steady
+            scaled[:, count] = field / length
+            image = volumes.image(scaled[:, count] / root) / root
+            count += 1
+            conduction[:count, count - 1] = conduction[count - 1, :count] = scaled[:, :count].T @ image
+    return scaled[:, :count] / root[:, None], steady
 
 
 def _lanczos(matrix: Array, start: Array) -> tuple[Array, Array, Array]:

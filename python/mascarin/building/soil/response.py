@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin.tables.recursion import recursion
+
 if TYPE_CHECKING:
     import numpy.typing as npt
 
@@ -91,13 +93,11 @@ def _weights(rate: float) -> tuple[float, float, float]:
 
 def _followed(rate: float, driving: Array, first: float) -> Array:
     """A mode at each hour that starts from a value."""
-    from scipy.signal import lfilter
-
     decay, then, now = _weights(rate)
     change = np.empty_like(driving)
     change[0] = first
     change[1:] = then * driving[:-1] + now * driving[1:]
-    return np.asarray(lfilter([1.0], [1.0, -decay], change))
+    return recursion(np.array([decay]), change)
 
 
 def _periodic(rates: Array, driven: Array, excess: Array) -> Array:

@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.tables.recursion import recursion
 from mascarin.validation.series import Autoregression, fit_autoregressions
 
 Floats = NDArray[np.float64]
@@ -222,12 +223,9 @@ class _Noise:
 
     def response(self, innovations: Floats) -> Floats:
         """Compute the series (T, S, ...) of innovations of the same shape."""
-        from scipy.signal import lfilter
-
         series = np.empty_like(innovations)
         for s, model in enumerate(self.models):
-            denominator = np.concatenate([[1.0], -model.coefficients])
-            series[:, s] = lfilter([1.0], denominator, innovations[:, s], axis=0)
+            series[:, s] = recursion(model.coefficients, innovations[:, s])
         return series
 
     def middle(self, wj: Floats) -> Floats:

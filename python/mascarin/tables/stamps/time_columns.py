@@ -76,6 +76,8 @@ def _time_names(frame: pd.DataFrame) -> list[Hashable]:
             first = named[0]
     if first == 0 and not _can_be_times(frame[names[0]]):
         first = next((k for k in range(1, min(len(names), 8)) if _are_dates(frame[names[k]])), 0)
+    if _has_times_of_day(frame[names[first]]):
+        return [names[first]]
     if first + 1 < len(names):
         pair = [frame[name].iloc[:50].dropna().astype(str).str.strip() for name in names[first : first + 2]]
         matches = [
@@ -107,6 +109,16 @@ def _can_be_times(series: pd.Series[Any]) -> bool:
         return True
     sample = _sample(series)
     return bool(len(set(sample)) > 1 or _are_dates(series)) and bool(sample.str.contains(r"\d").all())
+
+
+def _has_times_of_day(series: pd.Series[Any]) -> bool:
+    """Whether a column holds times that are not all midnight."""
+    import pandas as pd
+
+    if not pd.api.types.is_datetime64_any_dtype(series.dtype):
+        return False
+    times = series.dropna()
+    return bool((times != times.dt.normalize()).any())
 
 
 def _are_dates(series: pd.Series[Any]) -> bool:

@@ -21,6 +21,7 @@ from mascarin.tables.quality import Stretch, runs
 from mascarin.tables.times import stamps_of
 from mascarin.weather.checks.once import said_once
 from mascarin.weather.derived import completion
+from mascarin.weather.records.channels import SUN_POSITION
 from mascarin.weather.records.record import WeatherRecord
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def findings(record: WeatherRecord, latitude: float, longitude: float) -> tuple[
     tuple of str
         A sentence for each column: number of rows, the first time, the worst value, what to check.
     """
-    columns = [record.columns[name] for name in _NAMES if name in record.columns]
+    columns = [record.columns[name] for name in (*_NAMES, *SUN_POSITION) if name in record.columns]
     key = ("bright", tuple(record.kinds.get(name, "") for name in _NAMES), latitude, longitude)
 
     def sentences() -> list[str]:

@@ -21,7 +21,7 @@ from typing import Final, Literal
 import numpy as np
 
 from mascarin.tables.arrays import Array, Flags
-from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.derived.sun_position import sun_over
 from mascarin.weather.records.channels import RADIATION
 from mascarin.weather.records.record import WeatherRecord
 
@@ -193,7 +193,7 @@ def days_of(
     early = 0.5 * step if record.kinds["global_horizontal"] == "instant" else 0.0
     starts = grid.start + skipped * step - early + 86400.0 * chosen
     nodes = NODE * np.arange(-_MOST, round(86400.0 / NODE) + _MOST + 1)
-    sun = SunPath.over(latitude, longitude, starts[0] + nodes[0] - 1.0, starts[-1] + nodes[-1] + 1.0)
+    sun = sun_over(record, latitude, longitude, (starts[0] + nodes[0] - 1.0, starts[-1] + nodes[-1] + 1.0))
     directions = sun.vector(starts[:, None] + nodes)
     sines = np.maximum(directions[..., 2], 0.0)
     sunlit = sines.max(axis=1) > _LOW

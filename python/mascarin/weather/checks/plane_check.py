@@ -128,7 +128,7 @@ def _said(
     if not (certain and (agreed or _is_clear(combined))) or _contradicted(
         record, combined, latitude, longitude
     ):
-        return [f"{record.file}: warning: {text}; the clock is used as stated."]
+        return [f"{record.file}: {text}; the clock is used as stated."]
     minutes = -round(combined.late / 60.0)
     stated = ", ".join(f"{plane.name} {plane.azimuth:g} and {plane.tilt:g} deg" for plane, _ in sure)
     raise InputError(

@@ -18,8 +18,9 @@ from mascarin.weather.checks.clock_shift import ClockShift, shifts_of
 from mascarin.weather.checks.once import said_once
 from mascarin.weather.derived import sun as sun_module
 from mascarin.weather.derived.sun import SunPath
-from mascarin.weather.records.channels import RADIATION
-from mascarin.weather.records.record import WeatherRecord
+from mascarin.weather.derived.sun_position import Sun, angle_from_path, states_position, sun_over
+from mascarin.weather.records.channels import RADIATION, SUN_POSITION
+from mascarin.weather.records.record import WeatherRecord, plain_warning
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -31,6 +32,9 @@ _OUTSIDE: Final = 5e-4
 _NAMED_SHIFT: Final = 180.0
 """One that is wrong by more than this and three times the uncertainty is named. [s]"""
 _SHORTEST: Final = 2.0 * 86400.0
+_POSITION_OFF: Final = 1.0
+"""A stated position of the sun that is farther from that of place and time is named; four minutes are one
+degree, and refraction is half a degree. [deg]"""
 _DARK: Final = -0.02
 """Sine of the elevation below which daylight is neglected (1.1 deg below the horizon)."""
 _NIGHT_MOST: Final = 0.005
@@ -78,6 +82,8 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> tup
     """
     values = _radiation(record)
     grid = record.grid
+    if states_position(record):
+        return tuple(_stated_position(record, latitude, longitude))
     if values is None or grid.count * grid.interval < _SHORTEST or np.ptp(values) == 0.0:
         return ()
     # The sun over a year takes half as long as a run over three months: what has passed once is remembered.
@@ -102,7 +108,7 @@ def sun_warnings(record: WeatherRecord, latitude: float, longitude: float) -> tu
         Positive north and east. [deg]
     """
     clock = check_clock(record, latitude, longitude) if record.check_sun else ()
-    return (*findings(record, latitude, longitude), *clock)
+    return (*findings(record, latitude, longitude), *(plain_warning(text) for text in clock))
 
 
 def _shift_findings(record: WeatherRecord, latitude: float, longitude: float) -> list[str]:
@@ -205,6 +211,42 @@ def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: fl
     )
 
 
+def _stated_position(record: WeatherRecord, latitude: float, longitude: float) -> list[str]:
+    """Warnings about a stated position of the sun; radiation while it is below the horizon is refused."""
+    names = " and ".join(SUN_POSITION)
+    night = _below_stated_horizon(record, latitude, longitude)
+    if night > _NIGHT_MOST:
+        raise InputError(
+            f"{record.file}: {100.0 * night:.2g} % of the radiation is recorded while the sun of the columns "
+            f"{names} is below the horizon; expected less than {100.0 * _NIGHT_MOST:g} %. Check their stamps "
+            "and units (the elevation is an angle above the horizon in deg, no zenith angle), or read the "
+            "record as it is with check_sun: false (on the command line --no-check-sun, in Python "
+            "check_sun=False)."
+        )
+    away = angle_from_path(record, latitude, longitude)
+    if away <= _POSITION_OFF:
+        return []
+    return [
+        f"{record.file}: warning: the position of the sun that the columns {names} state is up to {away:.2g} "
+        f"deg away from that at latitude {latitude:g}, longitude {longitude:g}; the stated one is used."
+    ]
+
+
+def _below_stated_horizon(record: WeatherRecord, latitude: float, longitude: float) -> float:
+    """Part of the brightest irradiance while the stated sun is below the horizon. [-]"""
+    columns = [name for name in RADIATION if name in record.columns and np.any(record.columns[name] > 0.0)]
+    if not columns:
+        return 0.0
+    brightest = max(columns, key=lambda name: float(np.nansum(record.columns[name])))
+    values = np.maximum(np.nan_to_num(record.columns[brightest]), 0.0)
+    grid = record.grid
+    middle = grid.start + grid.interval * (
+        np.arange(grid.count) + (0.5 if record.kinds[brightest] == "mean" else 0.0)
+    )
+    sun = sun_over(record, latitude, longitude, (grid.start, grid.end))
+    return _night_part(values, sun, middle, grid.interval)
+
+
 def is_polar_night(part: Stretch, record: WeatherRecord) -> bool:
     """Whether a stretch of zeros of an irradiance is one over which the sun never rises.
 
@@ -225,7 +267,7 @@ def is_polar_night(part: Stretch, record: WeatherRecord) -> bool:
     if np.any(record.columns[part.channel][rows] != 0.0):
         return False
     # The first and the last day may have a little sun beside the zeros.
-    sun = SunPath.over(record.site.latitude, record.site.longitude, first, last)
+    sun = sun_over(record, record.site.latitude, record.site.longitude, (first, last))
     return bool(np.mean(sun.vector(np.arange(first, last, 1800.0))[:, 2] > -_DARK) < 0.02)
 
 
@@ -241,7 +283,7 @@ def _radiation(record: WeatherRecord) -> Array | None:
     return values if values.sum() > 0.0 else None
 
 
-def _night_part(values: Array, sun: SunPath, middle: Array, interval: float) -> float:
+def _night_part(values: Array, sun: Sun, middle: Array, interval: float) -> float:
     """Part of the radiation in intervals that are dark from start to end. [-]"""
     highest = np.max([sun.vector(middle + part * interval)[:, 2] for part in (-0.5, 0.0, 0.5)], axis=0)
     return float(values[highest < _DARK].sum() / values.sum())

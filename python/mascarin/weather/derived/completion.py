@@ -14,6 +14,7 @@ from mascarin.tables.record import Kind
 from mascarin.weather.derived import derive
 from mascarin.weather.derived.radiation import clear_beam, direct_by_closure
 from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.derived.sun_position import Sun, states_position, sun_over
 from mascarin.weather.records.channels import RADIATION, Basis
 from mascarin.weather.records.record import WeatherRecord
 
@@ -38,7 +39,7 @@ def complete(record: WeatherRecord, latitude: float, longitude: float) -> Weathe
         return record
     grid = record.grid
     kind: Kind = next((record.kinds[name] for name in RADIATION if name in record.kinds), "mean")
-    up, extra, clear = _sun_means(latitude, longitude, grid, kind)
+    up, extra, clear = _sun_means(record, latitude, longitude, kind)
     columns = dict(record.columns)
     notes: list[str] = []
     basis = _fill_radiation(columns, up, extra, clear, record.file, notes)
@@ -85,15 +86,26 @@ def extraterrestrial_horizontal(
     ndarray, shape (rows,)
         One for each row. [W/m2]
     """
-    grid = record.grid
-    up, extra, _ = _sun_means(latitude, longitude, grid, kind)
+    up, extra, _ = _sun_means(record, latitude, longitude, kind)
     return np.asarray(up * extra)
 
 
-@lru_cache(maxsize=2)  # runs that differ in the gain of an irradiance have the same sun
-def _sun_means(latitude: float, longitude: float, grid: Grid, kind: str) -> tuple[Array, Array, Array]:
+def _sun_means(
+    record: WeatherRecord, latitude: float, longitude: float, kind: str
+) -> tuple[Array, Array, Array]:
     """Mean sine of elevation, extraterrestrial and clear beam of each interval, or at its start."""
-    sun = SunPath.over(latitude, longitude, grid.start, grid.end)
+    grid = record.grid
+    if not states_position(record):
+        return _means_at_place(latitude, longitude, grid, kind)
+    return _means_of(sun_over(record, latitude, longitude, (grid.start, grid.end)), grid, kind)
+
+
+@lru_cache(maxsize=2)  # runs that differ in the gain of an irradiance have the same sun
+def _means_at_place(latitude: float, longitude: float, grid: Grid, kind: str) -> tuple[Array, Array, Array]:
+    return _means_of(SunPath.over(latitude, longitude, grid.start, grid.end), grid, kind)
+
+
+def _means_of(sun: Sun, grid: Grid, kind: str) -> tuple[Array, Array, Array]:
     starts = grid.start + grid.interval * np.arange(grid.count)
     if kind == "instant":
         up = np.maximum(sun.vector(starts)[:, 2], 0.0)

@@ -17,7 +17,7 @@ import numpy as np
 
 from mascarin.tables.arrays import Array
 from mascarin.tables.profile import PiecewiseProfile, index_nodes, node_times, pieces_for, trapezoid_weights
-from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.derived.sun_position import Sun
 from mascarin.weather.records.channels import Basis
 
 BEAM_CEILING: Final = 2.0
@@ -70,13 +70,13 @@ def clear_beam(sun_up: Array) -> Array:
 
 
 def from_means(
-    sun: SunPath, start: float, interval: float, direct: Array, diffuse: Array, total: Array, basis: Basis
+    sun: Sun, start: float, interval: float, direct: Array, diffuse: Array, total: Array, basis: Basis
 ) -> SkyProfiles:
     """Reconstruct the sky from interval means.
 
     Parameters
     ----------
-    sun : SunPath
+    sun : Sun
         The sun over the span.
     start, interval : float
         Start of the first interval, in the sun's time, and length of one [s].
@@ -115,7 +115,7 @@ def from_means(
 
 
 def from_instants(
-    sun: SunPath, start: float, interval: float, direct: Array, diffuse: Array, total: Array, basis: Basis
+    sun: Sun, start: float, interval: float, direct: Array, diffuse: Array, total: Array, basis: Basis
 ) -> SkyProfiles:
     """The sky from values at the stamps, linear between them.
 

@@ -89,7 +89,7 @@ class SunPath:
             East, north and up components; up <= 0 below the horizon [-].
         """
         position = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
-        slow = _cubic(self.slow, position)
+        slow = lagrange(self.slow, position)
         slow /= np.sqrt(np.sum(slow * slow, axis=-1, keepdims=True))
         return _from_pole(_turn(slow, -_TURN * _NODE_STEP * position), np.radians(self.latitude))
 
@@ -107,7 +107,7 @@ class SunPath:
             Irradiance on a plane facing the sun, outside the atmosphere [W/m2].
         """
         position = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
-        return _cubic(self.extra[:, None], position)[..., 0]
+        return lagrange(self.extra[:, None], position)[..., 0]
 
 
 @lru_cache(maxsize=16)
@@ -120,7 +120,7 @@ def _nodes(latitude: float, longitude: float, first: float, count: int) -> tuple
         seconds, latitude, longitude, 0.0, STANDARD_PRESSURE / 100.0, 12.0, _DELTA_T, 0.5667, 1
     )
     distance = spa.earthsun_distance(seconds, _DELTA_T, 1)
-    vector = _direction(np.radians(zenith), np.radians(azimuth))
+    vector = direction(np.radians(zenith), np.radians(azimuth))
     slow = _turn(_to_pole(vector, np.radians(latitude)), _TURN * (seconds - first))
     extra = SOLAR_CONSTANT / distance**2
     for shared in (slow, extra):
@@ -147,7 +147,8 @@ def _algorithm() -> ModuleType:
     return module
 
 
-def _direction(zenith: Array, azimuth: Array) -> Array:
+def direction(zenith: Array, azimuth: Array) -> Array:
+    """Unit vectors (east, north, up), shape (..., 3), from angles; the azimuth clockwise from north. [rad]"""
     sine = np.sin(zenith)
     return np.stack([sine * np.sin(azimuth), sine * np.cos(azimuth), np.cos(zenith)], axis=-1)
 
@@ -175,8 +176,8 @@ def _turn(vector: Array, angle: Array) -> Array:
     )
 
 
-def _cubic(nodes: Array, position: Array) -> Array:
-    """Four-point Lagrange interpolation at fractional node numbers."""
+def lagrange(nodes: Array, position: Array) -> Array:
+    """Four-point Lagrange interpolation of nodes (n, k) at fractional node numbers; n is 4 at least."""
     base = np.clip(np.floor(position).astype(np.int64), 1, len(nodes) - 3)
     x = (position - base)[..., None]
     before, current, after, beyond = nodes[base - 1], nodes[base], nodes[base + 1], nodes[base + 2]

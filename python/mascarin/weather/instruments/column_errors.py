@@ -21,9 +21,9 @@ from mascarin.tables.record import Record
 from mascarin.tables.steps import Steps
 from mascarin.weather.checks.missing_infrared import with_whole_infrared
 from mascarin.weather.derived.completion import complete
-from mascarin.weather.derived.sun import SunPath
-from mascarin.weather.forcing import channel_values, column_values, fill_radiation, record_of, sun_over
-from mascarin.weather.records.channels import BY_NAME, CHANNELS, RADIATION, SOURCE_CHANNELS
+from mascarin.weather.derived.sun_position import Sun, states_position
+from mascarin.weather.forcing import channel_values, column_values, fill_radiation, record_of, sun_over_steps
+from mascarin.weather.records.channels import BY_NAME, CHANNELS, RADIATION, SOURCE_CHANNELS, SUN_POSITION
 from mascarin.weather.records.record import WeatherRecord
 from mascarin.weather.records.site import SiteLike
 
@@ -103,7 +103,8 @@ class CorrectedForcing:
         self._columns: dict[str, Record] = {}
         for name in names:
             self._require(name, weather, measured)
-        self._weather = _cut(weather, self._given, steps)
+        position = SUN_POSITION if states_position(weather) else ()
+        self._weather = _cut(weather, [*self._given, *position], steps)
         weather_columns = {name for name in self._channels if name in weather.columns}
         further = {name for name in names if name in self._channels} | weather_columns
         for name in sorted(further):
@@ -127,6 +128,8 @@ class CorrectedForcing:
         )]  # fmt: skip
         if name == "relative_humidity":
             hint = "The dew point was made of it: write dew_point."
+        elif name in SUN_POSITION:
+            hint = "A stated position of the sun has no errors."
         elif name in BY_NAME:
             hint = "It is derived from the others: correct those."
         else:
@@ -224,8 +227,8 @@ class CorrectedForcing:
         out[..., CHANNELS.index(name)] = values
 
     @cached_property
-    def _sun_path(self) -> SunPath:
-        return sun_over(*self._place, self._weather.grid.interval, self._steps)
+    def _sun_path(self) -> Sun:
+        return sun_over_steps(self._weather, *self._place, self._steps)
 
     @cached_property
     def _with_modelled_sky(self) -> bool:
@@ -247,6 +250,12 @@ class CorrectedForcing:
                 )
             resolved[name] = replace(column_error, clock=column_error.clock + late)
         clocks = [resolved[name].clock for name in self._sun]
+        if any(clocks) and states_position(self._weather):
+            raise InputError(
+                f"weather.columns: found a clock of {clocks[0]:g} s for {', '.join(self._sun)}, but the "
+                f"table states the position of the sun ({', '.join(SUN_POSITION)}), which has no clock; "
+                "expected a clock of 0. Remove the clock, or the columns of the position"
+            )
         if len(set(clocks)) > 1:
             raise InputError(
                 f"weather.columns: found {', '.join(self._sun)} with clocks of "
@@ -256,6 +265,8 @@ class CorrectedForcing:
         return resolved
 
     def _moved_sun(self, scaled: WeatherRecord, errors: Errors) -> WeatherRecord:
+        if states_position(scaled):
+            return scaled
         names = [name for name in (*RADIATION, "cloud_cover") if name in scaled.columns]
         clocks = [errors[name].clock for name in names if name in RADIATION]
         return _moved(scaled, names, clocks[0] if clocks else 0.0)

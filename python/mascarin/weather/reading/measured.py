@@ -18,7 +18,7 @@ from mascarin.tables.reading.records import converted
 from mascarin.tables.reading.table import Table
 from mascarin.tables.record import Kind, Origin
 from mascarin.weather.reading.likely_units import require_likely_unit
-from mascarin.weather.records.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS
+from mascarin.weather.records.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, SUN_POSITION, UNITS
 from mascarin.weather.records.record import WeatherRecord
 
 NEUTRAL: Final[Mapping[str, float]] = {
@@ -35,7 +35,7 @@ NEUTRAL: Final[Mapping[str, float]] = {
 }
 """Values assumed for channels that the user states to be absent from a table."""
 
-_NAMES: Final = (*SOURCE_CHANNELS, "relative_humidity")
+_NAMES: Final = (*SOURCE_CHANNELS, "relative_humidity", *SUN_POSITION)
 
 Columns = Mapping[str, str | Column | Mapping[str, object]]
 
@@ -74,6 +74,12 @@ def _chosen(
         if name in UNITS or name == "relative_humidity":
             raise InputError(f"{table.where}: extra: {name!r} is a climate channel; name it under columns.")
         chosen[name] = Column.of(entry, f"{table.where}: extra.{name}")
+    position = [name for name in SUN_POSITION if name in chosen]
+    if len(position) == 1:
+        raise InputError(
+            f"{table.where}: columns: found {position[0]} alone, expected {' and '.join(SUN_POSITION)}; map "
+            "both, or neither: the position of the sun then follows from place and time."
+        )
     if "dew_point" in chosen and "relative_humidity" in chosen:
         raise InputError(f"{table.where}: columns: give dew_point or relative_humidity, not both.")
     return chosen
@@ -171,6 +177,11 @@ def _kinds(
     radiation = {name: kinds[name] for name in RADIATION if name in kinds}
     if len(set(radiation.values())) > 1:
         raise InputError(f"{where}: irradiances must be all means or all instants, found {radiation}.")
+    position = {name: kinds[name] for name in SUN_POSITION if name in kinds}
+    if len(set(position.values())) > 1:
+        raise InputError(
+            f"{where}: {' and '.join(position)} must both be means or both be instants, found {position}."
+        )
     return kinds
 
 
@@ -181,7 +192,7 @@ def _values(chosen: Mapping[str, Column], table: Table) -> tuple[dict[str, Array
         values[name], origins[name] = converted(table, column, name, unit)
         if not origins[name].stated:
             require_likely_unit(name, values[name], table.lines, column.column, table.where)
-        if name == "wind_direction":
+        if name in ("wind_direction", "sun_azimuth"):
             # Between 0 and 360 deg; a code such as 990 is kept and is refused when it is needed.
             turn = values[name]
             values[name] = np.where((turn >= -360.0) & (turn <= 720.0), turn % 360.0, turn)

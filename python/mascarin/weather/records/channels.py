@@ -57,22 +57,30 @@ _TABLE: Final = (
     Channel("day_of_year", "d", "instant", 0.0, 367.0, "time since 1 January 00:00, local"),
 )
 
+_POSITION: Final = (
+    Channel("sun_elevation", "deg", "instant", -90.0, 90.0, "angle of the sun above the level horizon"),
+    Channel("sun_azimuth", "deg", "instant", 0.0, 360.0, "where the sun stands, clockwise from north"),
+)
+
 CHANNELS: Final[tuple[str, ...]] = tuple(channel.name for channel in _TABLE)
 """Names of the climate channels in the order of the forcing's last axis."""
 
-BY_NAME: Final[dict[str, Channel]] = {channel.name: channel for channel in _TABLE}
-"""The channels by name."""
+BY_NAME: Final[dict[str, Channel]] = {channel.name: channel for channel in (*_TABLE, *_POSITION)}
+"""The channels by name, and the columns of a stated position of the sun."""
 
 LIMITS: Final[dict[str, tuple[float, float]]] = {
     name: (channel.low, channel.high) for name, channel in BY_NAME.items()
 }
 """Lowest and highest possible value of each channel. [unit of the channel]"""
 
-UNITS: Final[dict[str, str]] = {channel.name: channel.unit for channel in _TABLE}
+UNITS: Final[dict[str, str]] = {name: channel.unit for name, channel in BY_NAME.items()}
 """Unit of each channel."""
 
 SOURCE_CHANNELS: Final[tuple[str, ...]] = CHANNELS[:10]
 """Channels that come from a weather file; the others follow from place and time."""
+
+SUN_POSITION: Final[tuple[str, ...]] = tuple(channel.name for channel in _POSITION)
+"""Columns of a table that state the position of the sun; the engine takes it as a vector."""
 
 RADIATION: Final[tuple[str, ...]] = ("direct_normal", "diffuse_horizontal", "global_horizontal")
 """The three short-wave channels."""

@@ -12,6 +12,11 @@ from mascarin.weather.records.channels import RADIATION, Basis
 from mascarin.weather.records.site import Place
 
 
+def plain_warning(note: str) -> str:
+    """A note of a provenance that begins with the file and the word ``warning``, without this word."""
+    return note.replace(": warning: ", ": ", 1)
+
+
 @dataclass(frozen=True, eq=False)
 class WeatherRecord(Record):
     """A record of the weather.
@@ -50,7 +55,7 @@ class WeatherRecord(Record):
                 f"run takes the "
                 "model of the sky of Martin & Berdahl (1984), unless the building gives site.sky."
             )
-        return tuple(note.replace(": warning: ", ": ", 1) for note in said)
+        return tuple(plain_warning(note) for note in said)
 
     def measured(self, name: str) -> bool:
         """Whether a channel of a measured table was measured; a weather file of a year fills it somehow."""

@@ -191,7 +191,7 @@ outputs! {
         ),
         |at| at.step.incident(SideId::outside(surface)) - at.step.incident_beam(SideId::outside(surface));
 
-    /// Fraction of the sky that the surface sees, as diffuse radiation counts it before obstacles with vertices.
+    /// Fraction of the sky that the surface sees, past all obstacles, as diffuse radiation of an isotropic sky counts it.
     SkyView { surface } =
         Row::state(
             Of::OutdoorSurface,
@@ -202,7 +202,7 @@ outputs! {
         .within(0.0, 1.0),
         |at| at.step.views(SideId::outside(surface))[0];
 
-    /// Fraction of the ground that the surface sees, before obstacles with vertices.
+    /// Fraction of the ground that the surface sees past all obstacles, as radiation from the ground counts it.
     GroundView { surface } =
         Row::state(
             Of::OutdoorSurface,
