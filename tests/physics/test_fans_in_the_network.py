@@ -93,7 +93,7 @@ def test_a_fan_against_stack(flow: float) -> None:
 
 
 def test_a_fan_between_rooms_is_made_up_by_the_door_and_the_windows() -> None:
-    """From the first room into the second: back by the door of 1.5 m2, and by two windows in a row, 0.5/sqrt(2) m2."""
+    """Back by the door of 1.5 m2, and by two windows in a row, 0.5/sqrt(2) m2."""
     plain = rooms().to_dict()
     for zone in plain["zones"].values():
         zone["makeup_air"] = "vents"
@@ -108,7 +108,7 @@ def test_a_fan_between_rooms_is_made_up_by_the_door_and_the_windows() -> None:
 
 
 def test_vapour_leaves_with_the_air_of_a_fan() -> None:
-    """1 g/s of vapour in 1 m3/s: the room is 0.8 g/kg above the other air that enters it, in the steady state."""
+    """1 g/s of vapour in 1 m3/s: 0.8 g/kg above the air that enters, in the steady state."""
     plain = with_fan().to_dict()
     plain["humidity"] = {"zones": {"b": {"gains": {"kettle": {"rate": 1e-3}}}}}
     plain["zones"]["b"] |= {"held": 20}
