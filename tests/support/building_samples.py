@@ -125,7 +125,8 @@ windows:
     area: 1
     cavity_height: 0.3
     frame: {fraction: 0.2, u_value: 2}
-    outside: {convection: 15, sky_view: 0.4, height: 1.5, longwave: {kind: linearised, reference: 20}}
+    outside: {convection: 15, sky_view: 0.4, ground_view: 0.45, height: 1.5,
+              longwave: {kind: linearised, reference: 20}}
     inside: {convection: 3}
   light:
     surface: roof
