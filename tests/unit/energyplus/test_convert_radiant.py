@@ -138,18 +138,18 @@ def test_water_in_a_surface_is_a_radiant_load(
     """Without a thermostat, at its own set points; a floor radiates half of its heat (EN ISO 11855-2)."""
     objects = _VARIABLE.format(surface=surface, control="MeanAirTemperature")
     conversion = _with_water(tmp_path, "VariableFlow", objects)
-    zone = conversion.building.zones["room"]
-    assert float(zone.heating.radiative) == pytest.approx(heating, abs=1e-6)
-    assert float(zone.cooling.radiative) == pytest.approx(cooling, abs=1e-6)
-    assert float(zone.cooling.setpoint.temperature) == 26.0
+    room = conversion.building.to_dict()["zones"]["room"]
+    assert room["heating"]["radiative"] == pytest.approx(heating, abs=1e-6)
+    assert room["cooling"]["radiative"] == pytest.approx(cooling, abs=1e-6)
+    assert conversion.building.parameter("zones.room.cooling.setpoint.temperature").value == 26.0
     assert [f.what for f in conversion.findings if f.kind.endswith("VariableFlow")] == ["water in a surface"]
 
 
 def test_water_of_constant_flow_is_turned_in_the_middle_of_its_range(tmp_path: Path) -> None:
     """From 18 degC, the warmest water, to 23 degC, none: 20.5 degC; and no cooling."""
-    zone = _with_water(tmp_path, "ConstantFlow", _CONSTANT).building.zones["room"]
-    assert set(zone.loads) == {"heating"}
-    assert float(zone.heating.setpoint.temperature) == 20.5
+    building = _with_water(tmp_path, "ConstantFlow", _CONSTANT).building
+    assert set(building.zones["room"].loads) == {"heating"}
+    assert building.parameter("zones.room.heating.setpoint.temperature").value == 20.5
 
 
 def test_water_turned_by_something_else_is_left_out(tmp_path: Path) -> None:
