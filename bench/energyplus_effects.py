@@ -392,7 +392,6 @@ CASES = {
     "surrounding_surfaces": Case(
         "SurfaceProperty:SurroundingSurfaces", "*", of_file("surrounding_surfaces")
     ),
-    "ground_hidden": Case("", "a view factor to the ground*", of_file("ground_hidden")),
     "visible": Case(
         "Lights", "visible radiation",
         _lamps(fraction_radiant=0.4, fraction_visible=0.2), without=_lamps(fraction_radiant=0.6),

@@ -101,3 +101,27 @@ def test_views_are_those_past_obstacles() -> None:
     assert run[names[1]].to_numpy() == pytest.approx(0.5, abs=1e-12)
     stated = mc.simulate(strip({"sky_view": 0.31}), weather(0.0, 100.0), **options)
     assert stated[names[0]].to_numpy() == pytest.approx(0.31, abs=1e-12)
+
+
+def test_a_stated_view_of_the_ground_is_that_of_its_reflected_sun() -> None:
+    """The roof, level, sees none; with a view of 0.9 it gets ``0.9 r`` of its own irradiance in addition."""
+    plain = planes().to_dict()
+    plain["site"] |= {"ground_reflectance": 0.2, "diffuse": "isotropic"}
+    seeing = planes().to_dict() | {"site": plain["site"]}
+    seeing["surfaces"]["roof"]["outside"] = plain["surfaces"]["roof"]["outside"] | {"ground_view": 0.9}
+    seeing["windows"]["pane"]["outside"] = plain["windows"]["pane"]["outside"] | {"ground_view": 0.0}
+    names = ["roof.incident_solar", "roof.ground_view_factor", "pane.incident_diffuse", "pane.incident_solar"]
+    options: dict[str, Any] = {"start": "2001-06-20", "end": "2001-06-21", "step": "1h", "initial": 20.0}
+    runs = [
+        mc.simulate(Building.from_dict(tree), Climate.shipped("golden"), outputs=names, **options)
+        for tree in (plain, seeing)
+    ]
+    level = runs[0]["roof.incident_solar"].to_numpy()
+    more = runs[1]["roof.incident_solar"].to_numpy() - level
+    high = level > 100.0
+    assert high.sum() > 8
+    # The ground has the measured global radiation, the roof that of the sun's position in the hour.
+    assert more[high] == pytest.approx(0.9 * 0.2 * level[high], rel=3e-3)
+    assert runs[1]["roof.ground_view_factor"].to_numpy()[-1] == 0.9
+    lost = runs[0]["pane.incident_diffuse"].to_numpy() - runs[1]["pane.incident_diffuse"].to_numpy()
+    assert lost == pytest.approx(0.5 / 0.9 * more, rel=1e-9, abs=1e-9)

@@ -41,6 +41,7 @@ FORBIDDEN: Final[dict[tuple[str, str], str]] = {
     ("supercooling", "linear model"): "phase change",
     ("humidity", "linear model"): "heating or cooling",
     ("vents", "linear model"): "vent casement is not linear",
+    ("fans in vents", "linear model"): "vent casement is not linear",
     (
         "controls",
         "linear model",

@@ -53,6 +53,10 @@ AirflowNetwork:MultiZone:Surface,East,Crack,,1;
 AirflowNetwork:MultiZone:Surface,Between,Crack,,1;
 AirflowNetwork:MultiZone:Surface,Window,Casement,,0.3;
 """
+_GIVEN_FLOW = (
+    f"{_NETWORK}AirflowNetwork:MultiZone:SpecifiedFlowRate,Hood,0.02,MassFlow;\n"
+    "AirflowNetwork:MultiZone:Surface,Back,Hood,,1;\n"
+)
 _INNER = (
     "FenestrationSurface:Detailed,Hatch,Window,Glass,Between,,autocalculate,,1,4, 3,5,2, 3,5,1, 1,5,1, 1,5,2;"
 )
@@ -98,6 +102,7 @@ OBJECTS: Final[dict[str, Objects]] = {
         _HYSTERESIS, lambda one: any(getattr(m, "hysteresis", None) for m in one.materials.values())
     ),
     "vents": Objects(_NETWORK, lambda one: len(one.vents) == 4),
+    "fans in vents": Objects(_GIVEN_FLOW, lambda one: one.zones["Store"].makeup_air == "vents"),
     "controls": Objects(_NETWORK, lambda one: len(one.controls) == 1),
     "boundaries and densities": Objects(
         "", lambda one: getattr(one.zones["Room"].infiltration.density, "kind", "") == "outdoors"

@@ -125,7 +125,8 @@ windows:
     area: 1
     cavity_height: 0.3
     frame: {fraction: 0.2, u_value: 2}
-    outside: {convection: 15, sky_view: 0.4, height: 1.5, longwave: {kind: linearised, reference: 20}}
+    outside: {convection: 15, sky_view: 0.4, ground_view: 0.45, height: 1.5,
+              longwave: {kind: linearised, reference: 20}}
     inside: {convection: 3}
   light:
     surface: roof
@@ -207,6 +208,7 @@ surfaces:
       emissivity: 0.9
       absorptance: 0.4
       sky_view: 0.4
+      ground_view: 0.45
       height: 1.5
       longwave: {kind: linearised, reference: 24}
     inside: {zone: room, convection: 2.5, emissivity: 0.9, absorptance: 0.5}
@@ -568,8 +570,8 @@ def house() -> Building:
     for (zone, key), part in IN_ZONES.items():
         given: Any = plain["zones"][zone].get(key, {})
         plain["zones"][zone][key] = (given if isinstance(given, dict) and "value" not in given else {}) | part
-    for zone in ("room", "attic"):
-        plain["zones"][zone] |= {"makeup_air": "outdoors"}
+    for zone, makeup in (("room", "outdoors"), ("attic", "vents")):
+        plain["zones"][zone] |= {"makeup_air": makeup}
     plain["zones"]["room"] |= {"solar_to_air": 0.1, "setpoint_radiant_share": 0.3}
     for plant in ("heating", "cooling"):
         plain["zones"]["room"][plant] |= {"radiative": 0.2}

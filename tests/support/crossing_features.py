@@ -139,6 +139,13 @@ def _vents(tree: Json) -> None:
     }  # fmt: skip
 
 
+def _fans_in_vents(tree: Json) -> None:
+    _vents(tree)
+    tree["zones"]["hall"]["makeup_air"] = "vents"
+    tree["ventilation_units"] = {"hood": {"exhaust": {"hall": 0.02}}}
+    tree["surfaces"]["south"]["outside"]["ground_view"] = 0.3
+
+
 def _controls(tree: Json) -> None:
     _vents(tree)
     tree["controls"] = {
@@ -329,6 +336,7 @@ FEATURES: Final[dict[str, Callable[[Json], None]]] = {
     "supercooling": _supercooling,
     "humidity": _humidity,
     "vents": _vents,
+    "fans in vents": _fans_in_vents,
     "controls": _controls,
     "heat sources": _heat_sources,
     "soil": _soil,

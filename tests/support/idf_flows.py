@@ -138,6 +138,40 @@ FLOWS: Final[dict[str, tuple[str, float]]] = {
         ),
         0.6,
     ),
+    "network_with_a_given_flow": (
+        _room(
+            _WINTER,
+            _NETWORK,
+            "AirflowNetwork:MultiZone:Zone,room,NoVent;\n",
+            "AirflowNetwork:MultiZone:SpecifiedFlowRate,hood,0.03,MassFlow;\n",
+            "AirflowNetwork:MultiZone:Surface,R,hood,,1;\n",
+        ),
+        0.25,
+    ),
+    "network_with_a_given_supply": (
+        _room(
+            _SUMMER,
+            _NETWORK,
+            "AirflowNetwork:MultiZone:Zone,room,NoVent;\n",
+            "AirflowNetwork:MultiZone:SpecifiedFlowRate,blower,-0.04,VolumetricFlow;\n",
+            "AirflowNetwork:MultiZone:Surface,R,blower,,1;\n",
+        ),
+        0.25,
+    ),
+    "network_with_an_exhaust_fan": (
+        _room(
+            _SUMMER,
+            _NETWORK,
+            _STAT,
+            "AirflowNetwork:MultiZone:Zone,room,NoVent;\n",
+            "AirflowNetwork:MultiZone:Component:ZoneExhaustFan,fan,0.002,0.65;\n",
+            "AirflowNetwork:MultiZone:Surface,R,fan,,1;\n",
+            "ZoneHVAC:EquipmentConnections,room,list,,ex,air,out;\n",
+            "ZoneHVAC:EquipmentList,list,SequentialLoad,Fan:ZoneExhaust,fan,1,1;\n",
+            "Fan:ZoneExhaust,fan,night,0.6,125,0.05,ex,exhaust out;\n",
+        ),
+        0.35,
+    ),
     "single_pane": (
         _room(_SUMMER, _LEAK, glass="WindowMaterial:SimpleGlazingSystem,glass,5.7,0.8;\n"),
         0.3,

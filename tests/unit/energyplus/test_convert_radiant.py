@@ -1,4 +1,4 @@
-"""Electric mats in layers: heat sources, or ideal heating with the reason."""
+"""Electric mats in layers: heat sources, or ideal heating with the reason; water in layers: radiant loads."""
 
 from __future__ import annotations
 
@@ -102,3 +102,58 @@ def test_older_versions_state_the_plane_with_the_construction(tmp_path: Path) ->
     (tmp_path / "model.idf").write_text(text, encoding="utf-8")
     conversion = convert(tmp_path / "model.idf")
     assert conversion.building.heat_sources["mat"].after == "concrete"
+
+
+_MAT_IN_LIST = f"SequentialLoad,{MAT},mat,1,1,,;"
+_VARIABLE = """
+ZoneHVAC:LowTemperatureRadiant:VariableFlow,panel,design,,room,room {surface},,autosize,0.0001,a,b,autosize,
+  0.0001,c,d;
+ZoneHVAC:LowTemperatureRadiant:VariableFlow:Design,design,ConvectionOnly,0.013,0.016,0.35,{control},HalfFlowPower,
+  HeatingDesignCapacity,,,2,heat20,CoolingDesignCapacity,,,2,cool26;
+"""
+_CONSTANT = """
+Schedule:Constant,low,any,18;
+Schedule:Constant,high,any,23;
+Schedule:Constant,water,any,40;
+ZoneHVAC:LowTemperatureRadiant:ConstantFlow,panel,design,,room,room F,,0.0004,,75000,50,a,b,water,
+  water,high,low;
+ZoneHVAC:LowTemperatureRadiant:ConstantFlow:Design,design;
+"""
+
+
+def _with_water(tmp_path: Path, kind: str, objects: str) -> Conversion:
+    """The model of the mat, with water in its place."""
+    text = (SMALL / "radiant_mat.idf").read_text(encoding="utf-8")
+    own_line = next(line for line in text.splitlines() if line.strip().startswith(f"{MAT},mat"))
+    listed = f"SequentialLoad,ZoneHVAC:LowTemperatureRadiant:{kind},panel,1,1,,;"
+    return edited(tmp_path, "radiant_mat", (own_line, ""), (_MAT_IN_LIST, listed), more=objects)
+
+
+@pytest.mark.parametrize(
+    ("surface", "heating", "cooling"), [("F", 5.5 / 11.0, 5.5 / 7.0), ("R", 5.5 / 6.0, 5.5 / 11.0)]
+)
+def test_water_in_a_surface_is_a_radiant_load(
+    tmp_path: Path, surface: str, heating: float, cooling: float
+) -> None:
+    """Without a thermostat, at its own set points; a floor radiates half of its heat (EN ISO 11855-2)."""
+    objects = _VARIABLE.format(surface=surface, control="MeanAirTemperature")
+    conversion = _with_water(tmp_path, "VariableFlow", objects)
+    room = conversion.building.to_dict()["zones"]["room"]
+    assert room["heating"]["radiative"] == pytest.approx(heating, abs=1e-6)
+    assert room["cooling"]["radiative"] == pytest.approx(cooling, abs=1e-6)
+    assert conversion.building.parameter("zones.room.cooling.setpoint.temperature").value == 26.0
+    assert [f.what for f in conversion.findings if f.kind.endswith("VariableFlow")] == ["water in a surface"]
+
+
+def test_water_of_constant_flow_is_turned_in_the_middle_of_its_range(tmp_path: Path) -> None:
+    """From 18 degC, the warmest water, to 23 degC, none: 20.5 degC; and no cooling."""
+    building = _with_water(tmp_path, "ConstantFlow", _CONSTANT).building
+    assert set(building.zones["room"].loads) == {"heating"}
+    assert building.parameter("zones.room.heating.setpoint.temperature").value == 20.5
+
+
+def test_water_turned_by_something_else_is_left_out(tmp_path: Path) -> None:
+    objects = _VARIABLE.format(surface="F", control="SurfaceFaceTemperature")
+    conversion = _with_water(tmp_path, "VariableFlow", objects)
+    assert not conversion.building.zones["room"].loads
+    assert any("turned by surfacefacetemperature" in f.what for f in conversion.findings)

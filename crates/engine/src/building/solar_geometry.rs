@@ -65,6 +65,8 @@ struct Shaded {
     place: Option<usize>,
     /// Whether the description gives the fraction of the sky that it sees past all obstacles.
     given_sky: bool,
+    /// Whether it gives the fraction of the ground.
+    given_ground: bool,
 }
 
 impl SolarGeometry {
@@ -103,6 +105,7 @@ impl SolarGeometry {
                     receiver,
                     place: lit.then(|| place(1)),
                     given_sky: side.sky_view.is_some(),
+                    given_ground: side.ground_view.is_some(),
                 })
             })
             .collect();
@@ -173,12 +176,13 @@ impl SolarGeometry {
     /// Fractions that obstacles leave of sun, sky and ground on a surface.
     #[must_use]
     pub fn visibility(&self, surface: SideId, fractions: &[f64]) -> SkyVisibility {
-        let Some(Shaded { receiver, place, given_sky }) = &self.receivers[surface] else {
+        let Some(Shaded { receiver, place, given_sky, given_ground }) = &self.receivers[surface] else {
             return SkyVisibility::FULL;
         };
         SkyVisibility {
             sun: place.and_then(|place| fractions.get(place)).copied().unwrap_or(1.0),
             sky: if *given_sky { 1.0 } else { receiver.sky.sky },
+            ground: if *given_ground { 1.0 } else { receiver.sky.ground },
             ..receiver.sky
         }
     }

@@ -178,7 +178,7 @@ walk!(Angular { transmittance_scale, absorptance_scale }
         back_absorptance });
 
 walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, mixing, stratification, heating, cooling, setpoint_radiant_share }
-    plain { name, view_weights });
+    plain { name, view_weights, makeup_by_vents });
 walk!(Mixing { air_changes } plain { schedule });
 walk!(Stratification { gradient } plain { schedule, height });
 walk!(Infiltration { constant, temperature, wind, leakage, law, density } plain { schedule, control });
@@ -229,7 +229,7 @@ walk!(ChannelBand { band } plain { channel });
 walk!(Surface { area, openings, frame, cavity_height, tilt, azimuth, outside, inside }
     plain { name, construction, vertices, soil });
 walk!(FrameShare { fraction } plain { is_frame });
-walk!(Side { facing, convection, heat_flux, emissivity, absorptance, area_factor, sky_view, height, longwave }
+walk!(Side { facing, convection, heat_flux, emissivity, absorptance, area_factor, sky_view, ground_view, height, longwave }
     plain { irradiance, behind_obstacles, exposure, shaded_by, own_shades, outline, level });
 walk!(HeatFlux { flux } plain { schedule });
 walk!(HeatSource { means, thermostat } plain { name, surface, layer, control });

@@ -48,6 +48,8 @@ pub(crate) struct VentNetwork<'a, S> {
     laws: Vec<PressureFlow<S>>,
     /// Of each zone [Pa].
     pub(crate) pressures: Vec<S>,
+    /// Flow that fans take out of each zone, whatever its pressure [m3/s of air of the site].
+    pub(crate) drawn: Vec<S>,
     /// Flow out of each zone less that into it [m3/s of air of the site].
     surplus: Vec<S>,
 }
@@ -61,6 +63,7 @@ impl<'a, S: Real> VentNetwork<'a, S> {
             links: Vec::new(),
             laws: Vec::new(),
             pressures: zeros.clone(),
+            drawn: zeros.clone(),
             surplus: zeros,
         }
     }
@@ -104,8 +107,12 @@ impl<'a, S: Real> VentNetwork<'a, S> {
     fn evaluate(&mut self, fixed: bool) -> (S, S) {
         let of = |number: S| if fixed { number.fixed() } else { number };
         let (mut worst, mut all) = (S::zero(), S::zero());
-        for (surplus, &pressure) in self.surplus.iter_mut().zip(&self.pressures) {
-            *surplus = pressure.scale(LEAK);
+        for (surplus, (&pressure, &drawn)) in
+            self.surplus.iter_mut().zip(self.pressures.iter().zip(&self.drawn))
+        {
+            let by_fans = of(drawn);
+            *surplus = pressure.scale(LEAK) + by_fans;
+            all += by_fans.abs();
         }
         self.laws.clear();
         for link in &self.links {
@@ -132,7 +139,7 @@ impl<'a, S: Real> VentNetwork<'a, S> {
     /// Moves the pressures of active lanes to the solution of the straight lines, tangents or secants.
     #[inline(always)]
     fn move_pressures(&mut self, active: S::Mask, tangents: S::Mask) {
-        let Self { plan, system, links, laws, pressures, surplus } = self;
+        let Self { plan, system, links, laws, pressures, surplus, drawn: _ } = self;
         system.clear_matrix();
         for (&row, &surplus) in plan.rows.iter().zip(&*surplus) {
             system.add_diagonal(row, S::constant(LEAK));

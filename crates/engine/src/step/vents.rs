@@ -111,6 +111,9 @@ fn drive<S: Real>(
     let density = |air: S| S::constant(OF_DENSITY) / (air + S::constant(KELVIN));
     let outdoor = density(conditions.outdoor_air);
     let of_zone = |zone: usize| density(air[zone]);
+    for (drawn, zone) in network.drawn.iter_mut().zip(&conditions.mechanical_air.zones) {
+        *drawn = zone.drawn / numbers.heat;
+    }
     network.links.clear();
     for (k, vent) in numbers.all.iter().enumerate() {
         let ends = [of_zone(vent.zone), vent.to.map_or(outdoor, of_zone)];

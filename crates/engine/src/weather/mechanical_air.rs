@@ -33,6 +33,8 @@ pub struct ZoneBalance<S> {
     to_zones: S,
     exhaust: S,
     recovered: S,
+    /// What fans take out of a zone and do not bring in, where the pressure network makes it up [W/K]; below zero where they bring in more.
+    pub(crate) drawn: S,
 }
 
 impl<S: Real> ZoneBalance<S> {
@@ -48,15 +50,20 @@ impl<S: Real> ZoneBalance<S> {
             to_zones: zero,
             exhaust: zero,
             recovered: zero,
+            drawn: zero,
         }
     }
 
-    /// Balances the flows, once all are added up.
-    fn balance(&mut self) {
+    /// Balances the flows, once all are added up: by leaks, or by the pressure network.
+    fn balance(&mut self, by_vents: bool) {
         let surplus = self.supply + self.from_zones - self.to_zones;
-        self.outward = self.exhaust.max(surplus);
+        if by_vents {
+            (self.outward, self.fresh, self.drawn) = (self.exhaust, self.supply, self.exhaust - surplus);
+        } else {
+            self.outward = self.exhaust.max(surplus);
+            self.fresh = self.supply + (self.exhaust - surplus).max(S::zero());
+        }
         self.leaving = self.outward - self.recovered;
-        self.fresh = self.supply + (self.exhaust - surplus).max(S::zero());
     }
 
     /// Adds air that leaves to outdoors and outdoor air that enters in its place [W/K].
@@ -94,6 +101,7 @@ impl<S: Real> MechanicalConditions<S> {
             at.outward = rate(a.outward, b.outward);
             at.fresh = rate(a.fresh, b.fresh);
             at.from_zones = rate(a.from_zones, b.from_zones);
+            at.drawn = line(a.drawn, b.drawn);
         }
     }
 
@@ -129,8 +137,8 @@ impl<S: Real> MechanicalConditions<S> {
                 self.recover(unit, (row, densities), &mut pair);
             }
         }
-        for zone in &mut self.zones {
-            zone.balance();
+        for (zone, &by_vents) in self.zones.iter_mut().zip(&air.by_vents) {
+            zone.balance(by_vents);
         }
     }
 

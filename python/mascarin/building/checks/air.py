@@ -81,14 +81,14 @@ def imbalance(flows: Mapping[str, float], air: str = "site") -> str | None:
 #: What to do about flows that do not balance.
 REMEDY: Final = (
     "Correct the flows, add 'air_paths' with 'one_way: true' to or from another zone, or write 'makeup_air: "
-    "outdoors' in the zone if the rest comes and goes through leaks. Flows with different 'density:' do not "
-    "balance each other."
+    "outdoors' in the zone if the rest comes and goes through leaks, 'makeup_air: vents' if through its "
+    "'vents'. Flows with different 'density:' do not balance each other."
 )
 
 
 def air_faults(building: Description) -> Iterator[InitErrorDetails]:
     """Constant flows that do not balance, and parts that nothing uses."""
-    flows = flows_of_zones(building)
+    flows, joined = flows_of_zones(building), _joined_with_outdoors(building)
     for zone, part in building.zones.items():
         if part.makeup_air is not None and all(zone != moved for moved, _ in flows):
             yield fault(
@@ -96,6 +96,13 @@ def air_faults(building: Description) -> Iterator[InitErrorDetails]:
                 "a zone that no fan moves air through",
                 "a flow of 'ventilation_units' or a one-way air path",
                 "Remove 'makeup_air:'.",
+            )
+        if part.makeup_air == "vents" and zone not in joined:
+            yield fault(
+                ("zones", zone, "makeup_air"),
+                "'vents' in a zone that no vents join with outdoors",
+                "vents from it to outdoors, directly or through other zones",
+                "Add an opening under 'vents:', or write 'makeup_air: outdoors'.",
             )
         yield from _bridges(building, zone)
         if part.solar_to_air is not None:
@@ -109,6 +116,17 @@ def air_faults(building: Description) -> Iterator[InitErrorDetails]:
         wrong = imbalance({path: sign * part.number for path, part, sign in those}, air)
         if wrong is not None:
             yield fault(("zones", zone), wrong, "as much air in as out", REMEDY)
+
+
+def _joined_with_outdoors(building: Description) -> set[str]:
+    """Zones from which vents lead outdoors, directly or through other zones."""
+    joined = {vent.ends[0] for vent in building.vents.values() if vent.between is None}
+    while True:
+        ends = [set(vent.ends) for vent in building.vents.values() if joined & set(vent.ends)]
+        wider = joined.union(*ends)
+        if wider == joined:
+            return joined
+        joined = wider
 
 
 def vent_faults(building: Description) -> Iterator[InitErrorDetails]:

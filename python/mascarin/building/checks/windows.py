@@ -74,7 +74,7 @@ def windows_lie_in_walls(building: Description) -> Faults:
 def _between_zones(building: Description, location: Location, window: Window) -> Faults:
     """What has no effect on a window between two zones, and what says nothing of it."""
     wall, outside = building.surfaces[window.surface], window.outside
-    for key in ("sky_view", "height", "longwave", "irradiance", "behind_obstacles"):
+    for key in ("sky_view", "ground_view", "height", "longwave", "irradiance", "behind_obstacles"):
         if getattr(outside, key) is not None:
             yield fault(
                 (*location, "outside", key),

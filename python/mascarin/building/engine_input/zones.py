@@ -61,6 +61,7 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
         "setpoint_radiant_share": None
         if zone.setpoint_radiant_share is None
         else ids("setpoint_radiant_share"),
+        "makeup_by_vents": zone.makeup_air == "vents",
         "longwave": fields_of(zone.longwave, ids, "longwave."),
         "view_weights": view_weights(building, name),
         "sun": _sun(building, name, zone, ids),

@@ -61,6 +61,12 @@ class SurfaceSide:
         view = (1.0 if self.tilt < 180.0 else 0.0) if self.side.sky_view is None else self.side.sky_view
         return self.side.exposed.sky and not isinstance(self.side.longwave, NoLongwave) and view > 0.0
 
+    @property
+    def sees_ground(self) -> bool:
+        """Whether sun that the ground reflects reaches it."""
+        view = None if isinstance(self.side, WindowInside) else self.side.ground_view
+        return self.tilt > 0.0 if view is None else view > 0.0
+
 
 def has_height(side: Side | WindowOutside | WindowInside) -> bool:
     """Whether a side has a height above ground."""
@@ -195,11 +201,8 @@ def _in_site(building: Description, all_sides: list[SurfaceSide]) -> Reasons:
     site = building.site
     seeing = [item for item in all_sides if item.sees_sky]
     parts = obstructed_paths(building)
-    if not any((item.sunlit or item.path in parts) and item.tilt > 0.0 for item in all_sides):
-        yield (
-            "site.ground_reflectance",
-            "no tilted surface takes its irradiance from the climate",
-        )
+    if not any((item.sunlit or item.path in parts) and item.sees_ground for item in all_sides):
+        yield "site.ground_reflectance", "no tilted surface takes its irradiance from the climate"
     if not seeing:
         yield from _all_of("site.sky", site.sky, "no surface exchanges long-wave radiation with the sky")
     if not seeing or site.sky.clouded:

@@ -37,6 +37,15 @@ SkyView = Annotated[
     Number,
     Quantity("-", "Fraction of the sky that is visible", Within(0.1, "trees and neighbors"), FRACTION),
 ]
+GroundView = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Fraction of the ground that is visible, for the sun that it reflects",
+        Within(0.1, "what stands on the ground"),
+        FRACTION,
+    ),
+]
 ReferenceTemperature = Annotated[
     Number,
     Quantity(

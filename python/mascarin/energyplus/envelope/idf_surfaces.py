@@ -43,8 +43,8 @@ _OPENINGS: Final = {
 }
 #: Tilt above which EnergyPlus turns a roof or ceiling, and below which it turns a floor [deg].
 _VERTICAL: Final = 90.0
-#: Difference of view factors that is not noted, and view factor that is none [-].
-_SAME_VIEW: Final = 0.05
+#: Difference of view factors that is none, and view factor that is none [-].
+_SAME_VIEW: Final = 0.005
 _NO_VIEW: Final = 0.001
 #: Tilt from which a plane sees the ground alone [deg].
 _DOWN: Final = 179.0
@@ -69,6 +69,8 @@ class IdfSurface:
         Whether it is exposed to sun and to wind.
     points : ndarray, shape (n, 3)
         Corners, counter-clockwise seen from outside. [m]
+    ground : float or None
+        View factor to the ground, where it is not that of the tilt. [-]
     """
 
     item: IdfObject
@@ -79,6 +81,7 @@ class IdfSurface:
     sun: bool
     wind: bool
     points: g.Array
+    ground: float | None = None
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,8 @@ class IdfOpening:
         Corners, counter-clockwise seen from outside. [m]
     copies : int
         How many of it there are.
+    ground : float or None
+        View factor to the ground, where it is not that of the tilt. [-]
     """
 
     item: IdfObject
@@ -107,6 +112,7 @@ class IdfOpening:
     beyond: str
     points: g.Array
     copies: int
+    ground: float | None = None
 
 
 @reads(*SURFACES)
@@ -139,40 +145,28 @@ def _detailed(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
     shape = _DETAILED[item.kind] or item.word("surface_type") or "wall"
     points = points[::-1] if rules.clockwise else points
     points = _upright(context, item, shape, _checked(item, points))
-    if item.word("outside_boundary_condition") in ("outdoors", ""):
-        sunlit = _ground_seen(context, item, points)
-    else:
-        sunlit = True
+    outdoors = item.word("outside_boundary_condition") in ("outdoors", "")
+    ground = _ground_view(item, points) if outdoors else None
+    # No sun reaches what looks down and sees no ground.
+    dark = ground is not None and ground <= _NO_VIEW and g.tilt_of(points) >= _DOWN
     return IdfSurface(
         item=item,
         zone=zone,
         shape=shape,
         boundary=item.word("outside_boundary_condition") or "outdoors",
         beyond=item.text("outside_boundary_condition_object"),
-        sun=sunlit and item.word("sun_exposure") != "nosun",
+        sun=not dark and item.word("sun_exposure") != "nosun",
         wind=item.word("wind_exposure") != "nowind",
         points=points,
+        ground=None if dark else ground,
     )
 
 
-def _ground_seen(context: Context, item: IdfObject, points: g.Array, *, opaque: bool = True) -> bool:
-    """Whether any sun reaches a plane: none an opaque one that looks down, without a view of the ground.
-
-    A view factor to the ground that is not that of the tilt, which is used here, is noted.
-    """
-    entered_view = item.number("view_factor_to_ground")
-    if opaque and entered_view is not None and entered_view <= _NO_VIEW and g.tilt_of(points) >= _DOWN:
-        return False
+def _ground_view(item: IdfObject, points: g.Array) -> float | None:
+    """View factor to the ground that the file states; None where it is that of the tilt. [-]"""
+    stated = item.number("view_factor_to_ground")
     by_tilt = 0.5 * (1.0 - math.cos(math.radians(g.tilt_of(points))))
-    if entered_view is not None and abs(entered_view - by_tilt) > _SAME_VIEW:
-        share = round(100.0 * abs(by_tilt - entered_view))
-        more = "more" if by_tilt > entered_view else "less"
-        context.findings.left_out(
-            item,
-            f"a view factor to the ground of {entered_view:g}",
-            f"{by_tilt:.2f} by its tilt: {share} % {more} of the sun that the ground reflects reaches it",
-        )
-    return True
+    return None if stated is None or abs(stated - by_tilt) <= _SAME_VIEW else min(max(stated, 0.0), 1.0)
 
 
 def _simple(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
@@ -258,13 +252,13 @@ def read_openings(context: Context, surfaces: list[IdfSurface]) -> list[IdfOpeni
 
 
 def _opening(context: Context, rules: g.Rules, item: IdfObject, base: IdfSurface) -> IdfOpening:
-    copies = max(1, round(item.number("multiplier") or 1.0))
+    copies, ground = max(1, round(item.number("multiplier") or 1.0)), None
     beyond = item.text("outside_boundary_condition_object")
     if item.kind == "FenestrationSurface:Detailed":
         points = g.frame_of(base.zone, rules, rules.relative).place(g.corners_of(item))
         points = points[::-1] if rules.clockwise else points
         if base.boundary == "outdoors":
-            _ground_seen(context, item, base.points, opaque=False)
+            ground = _ground_view(item, base.points)
         shape = {"glassdoor": "window"}.get(item.word("surface_type"), item.word("surface_type"))
     else:
         plane = g.plane_through(base.points)
@@ -274,7 +268,7 @@ def _opening(context: Context, rules: g.Rules, item: IdfObject, base: IdfSurface
         shape = _OPENINGS[item.kind][0]
     if float(g.normal_of(points) @ g.normal_of(base.points)) < 0.0:
         points = points[::-1]
-    return IdfOpening(item, base, shape, beyond, _checked(item, points), copies)
+    return IdfOpening(item, base, shape, beyond, _checked(item, points), copies, ground)
 
 
 def floor_area(zone: IdfObject, surfaces: list[IdfSurface]) -> float:

@@ -182,6 +182,7 @@ def _outdoors(context: Context, surface: IdfSurface, coefficients: ConvectionCoe
     side_section = {"outdoors": True, "convection": coefficient.convection, "emissivity": side["emissivity"]}
     if surface.sun:
         side_section["absorptance"] = side["absorptance"]
+        side_section |= {} if surface.ground is None else {"ground_view": surface.ground}
     if coefficient.combined:
         side_section["longwave"] = "none"
     # EnergyPlus has no wind at and below the ground.

@@ -105,6 +105,7 @@ def _window(
     if outdoors:
         # EnergyPlus adds long-wave radiation to a combined coefficient on windows, not on walls.
         window["outside"] = {"convection": coefficient.convection}
+        window["outside"] |= {} if opening.ground is None else {"ground_view": opening.ground}
     else:
         window["outside"] = {"convection": coefficients.inside(item, base.zone, tilt, window=True)}
     window["inside"] = {"convection": coefficients.inside(item, base.zone, tilt, window=True)}
@@ -272,6 +273,9 @@ def _door(
             opening.item, opening.base.zone, skin(context, door_construction, outer=True)["roughness"]
         )
         sides["outside"]["convection"] = coefficient.convection
+        sides["outside"].pop("ground_view", None)
+        if opening.ground is not None and "absorptance" in sides["outside"]:
+            sides["outside"]["ground_view"] = opening.ground
     cut = bool(wall["outside"].get("adiabatic"))
     context.section("surfaces")[context.names.of("surfaces", opening.item.name)] = {
         "construction": construction(context, door_construction, cut=cut, finite_differences=False),

@@ -14,7 +14,7 @@ from mascarin.energyplus.model.year import Year, combined, constant
 from mascarin.energyplus.zones.draughts import Draught, density_of, limited, ventilate
 from mascarin.energyplus.zones.equipment import Plant, replaced
 from mascarin.energyplus.zones.gains import people_in
-from mascarin.energyplus.zones.radiant import Envelope, describe_mats
+from mascarin.energyplus.zones.radiant import PANELS, Envelope, describe_mats, panel_loads
 from mascarin.energyplus.zones.zones import Zone
 from mascarin.physics import AIR_SPECIFIC_HEAT
 
@@ -83,7 +83,10 @@ def describe_conditioning(context: Context, zones: dict[str, Zone], envelope: En
         zone_systems = [system for system in systems.get(key, []) if system.name not in mats]
         ideal = [system for system in zone_systems if system.kind == IDEAL]
         points, zone_systems = set_points.get(key), ideal[:1] or zone_systems
-        if points is None and zone_systems and zone_systems[0].kind in (IDEAL, _TEMPLATE):
+        if zone_systems and all(system.kind in PANELS for system in zone_systems):
+            # A panel has set points of its own, and needs no thermostat.
+            _warm_surfaces(context, zone, panel_loads(context, zone_systems[0], envelope) or {})
+        elif points is None and zone_systems and zone_systems[0].kind in (IDEAL, _TEMPLATE):
             context.findings.no_effect(zone_systems, "a system without a thermostat", "it conditions nothing")
         elif points is not None and zone_systems and zone_systems[0].kind in (IDEAL, _TEMPLATE):
             _condition(context, zone, points, zone_systems[0], zones)
@@ -95,6 +98,13 @@ def describe_conditioning(context: Context, zones: dict[str, Zone], envelope: En
                 )
             else:
                 _hold(context, zone, points, plants)
+
+
+def _warm_surfaces(context: Context, zone: Zone, loads: dict[str, tuple[Year, Plant]]) -> None:
+    """Loads of water in surfaces."""
+    never = {"heating": constant(NEVER_HEATS), "cooling": constant(NEVER_COOLS)}
+    points = {which: loads[which][0] if which in loads else idle for which, idle in never.items()}
+    _hold(context, zone, SetPoints(**points), {which: plant for which, (_, plant) in loads.items()})
 
 
 def usual_temperatures(context: Context, zones: dict[str, Zone]) -> dict[str, float]:

@@ -17,6 +17,15 @@ from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.model.year import Year, combined
+from mascarin.energyplus.zones.fans import (
+    EXHAUST,
+    FANS,
+    SPECIFIED,
+    check_makeup,
+    exhaust_fan,
+    specified_flow,
+    still,
+)
 from mascarin.energyplus.zones.zones import Zone
 from mascarin.physics import STANDARD_PRESSURE
 
@@ -28,8 +37,7 @@ _OPENINGS: Final = (
     "AirflowNetwork:MultiZone:Component:DetailedOpening", "AirflowNetwork:MultiZone:Component:SimpleOpening",
 )  # fmt: skip
 _COMPONENTS: Final = (
-    *_CRACKS, *_OPENINGS, "AirflowNetwork:MultiZone:Component:HorizontalOpening",
-    "AirflowNetwork:MultiZone:Component:ZoneExhaustFan", "AirflowNetwork:MultiZone:SpecifiedFlowRate",
+    *_CRACKS, *_OPENINGS, "AirflowNetwork:MultiZone:Component:HorizontalOpening", *FANS,
 )  # fmt: skip
 NETWORK: Final = (
     "AirflowNetwork:SimulationControl", "AirflowNetwork:MultiZone:Zone", "AirflowNetwork:MultiZone:Surface",
@@ -108,8 +116,24 @@ def describe_network(
             _crack(context, item, ends, *_leak(context, component))
         elif component.kind in _OPENINGS:
             _opening(context, item, joint, component, ends)
+        elif component.kind in FANS:
+            _fan(context, item, joint, component, ends)
         else:
             context.findings.left_out(item, f"a {component.kind}", "no air passes here")
+    check_makeup(context)
+
+
+def _fan(context: Context, item: IdfObject, joint: Joint, component: IdfObject, ends: Section) -> None:
+    """A flow whatever the pressures; an exhaust fan that stands still leaks."""
+    share = item.number("window_door_opening_factor_or_crack_factor")
+    share = 1.0 if share is None else share
+    if component.kind == SPECIFIED:
+        specified_flow(context, component, share, joint.ends)
+    elif component.kind == EXHAUST:
+        leak = exhaust_fan(context, component, share, joint.ends[0])
+        if leak is not None:
+            flow, exponent, off = leak
+            _crack(context, item, ends | still(context, component.name, off), flow / share, exponent)
 
 
 def _joints(

@@ -1,4 +1,4 @@
-"""Radiant systems in layers: electric mats in a plane of a construction, turned by the air of their zone."""
+"""Radiant systems in layers: electric mats in a plane of a construction, and water as radiant loads."""
 
 from __future__ import annotations
 
@@ -15,10 +15,23 @@ from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, temperature, year
-from mascarin.energyplus.model.year import combined
+from mascarin.energyplus.model.year import Year, combined
+from mascarin.energyplus.zones.equipment import Plant
 from mascarin.energyplus.zones.zones import Zone
 
 MAT: Final = "ZoneHVAC:LowTemperatureRadiant:Electric"
+_VARIABLE: Final = "ZoneHVAC:LowTemperatureRadiant:VariableFlow"
+_CONSTANT: Final = "ZoneHVAC:LowTemperatureRadiant:ConstantFlow"
+#: Classes whose water warms or cools a plane.
+PANELS: Final = (_VARIABLE, _CONSTANT)
+_DESIGNS: Final = tuple(f"{kind}:Design" for kind in PANELS)
+#: Coefficients at a panel: radiation, and all heat of a floor, wall and ceiling by what it does [W/(m2 K)]
+#: (EN ISO 11855-2; Babiak, Olesen & Petras 2007, REHVA Guidebook 7).
+_RADIATED: Final = 5.5
+_ALL_HEAT: Final = {
+    "heating": {"floor": 11.0, "wall": 8.0, "ceiling": 6.0},
+    "cooling": {"floor": 7.0, "wall": 8.0, "ceiling": 11.0},
+}
 #: Classes that put a plane into a construction, which they name, or which they are.
 PLANE: Final = "ConstructionProperty:InternalHeatSource"
 _OLDER_PLANE: Final = "Construction:InternalSource"
@@ -221,3 +234,70 @@ def _plane(context: Context, surface: IdfSurface, envelope: Envelope) -> tuple[s
     # From the other side, the layers run the other way.
     layer = layers[count - number - 1 if key in envelope.done.reversed_names else number - 1]
     return placed, layer.get("name", layer["material"])
+
+
+@reads(*PANELS, *_DESIGNS)
+def panel_loads(
+    context: Context, system: IdfObject, envelope: Envelope
+) -> dict[str, tuple[Year, Plant]] | None:
+    """Heating and cooling by water in a surface, as ideal loads that are partly radiated.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    system : IdfObject
+        The panel.
+    envelope : Envelope
+        The surfaces.
+
+    Returns
+    -------
+    dict of str to tuple of (Year, Plant), or None
+        Set point [degC] and load of heating and of cooling; None where it is not turned by the room.
+    """
+    design = context.model.named(system.text("design_object"), *_DESIGNS) or system
+    for item in (system, design):
+        for pattern in ("hydronic_*", "*_flow*", "*_capacity*", "rated_*", "motor_*", "*_inefficiencies_*",
+                        "*_water_*", "*_circuit*", "*_range", "condensation_*", "fluid_*", "changeover_*",
+                        "setpoint_control_type", "zone_name", "running_mean_*"):  # fmt: skip
+            item.fields.pass_over(pattern)
+    kind = design.word("temperature_control_type")
+    if kind not in ("", "meanairtemperature", *_OF_THE_ROOM):
+        context.findings.left_out(system, f"a panel that is turned by {kind}", "it heats and cools nothing")
+        return None
+    if kind in _OF_THE_ROOM:
+        context.findings.approximated(system, f"a control by {kind}", "the air of the zone in its place")
+    context.findings.left_out(
+        system,
+        "water in a surface",
+        "ideal loads, partly radiated, hold its set points: neither its limits nor what the surface stores "
+        "and loses. In two example files 1.3 to 2.0 K, and 12 to 31 % less heat",
+    )
+    on = year(context, system, "availability_schedule_name")
+    shape = _panel_shape(context, system, envelope)
+    loads = {}
+    for which, all_heat in _ALL_HEAT.items():
+        points = _panel_points(context, system, design, which)
+        if points is not None:
+            loads[which] = points, Plant(on, radiative=_RADIATED / all_heat[shape])
+    return loads
+
+
+def _panel_points(context: Context, system: IdfObject, design: IdfObject, which: str) -> Year | None:
+    """Temperature about which the flow, or the temperature of the water, changes; None where it does not."""
+    if system.kind == _VARIABLE:
+        key = f"{which}_control_temperature_schedule_name"
+        return year(context, design, key) if design.text(key) else None
+    keys = [f"{which}_{end}_control_temperature_schedule_name" for end in ("low", "high")]
+    if not all(system.text(key) for key in keys):
+        return None
+    low, high = (year(context, system, key) for key in keys)
+    return combined(lambda first, second: 0.5 * (first + second), low, high)
+
+
+def _panel_shape(context: Context, system: IdfObject, envelope: Envelope) -> str:
+    """What a panel lies in: the first of its surfaces."""
+    for surface, _ in _surfaces(context, system, envelope):
+        return "ceiling" if surface.shape == "roof" else surface.shape
+    return "floor"

@@ -21,6 +21,8 @@ pub struct MechanicalAir<S> {
     pub(crate) first_of_vents: usize,
     /// Whether there is a pressure network, which every zone is part of.
     vented: bool,
+    /// Of each zone: whether the network makes up what fans take out of it.
+    pub(crate) by_vents: Vec<bool>,
 }
 
 impl<S: Real> MechanicalAir<S> {
@@ -41,7 +43,8 @@ impl<S: Real> MechanicalAir<S> {
         let first_of_vents = carries.len();
         let between = description.vents.iter().filter_map(Vent::between);
         carries.extend(between.flat_map(|[a, b]| [[a, b], [b, a]]));
-        Self { units, directed, carries, first_of_vents, vented: plan.vents.is_some() }
+        let by_vents = description.zones.iter().map(|zone| zone.makeup_by_vents).collect();
+        Self { units, directed, carries, first_of_vents, vented: plan.vents.is_some(), by_vents }
     }
 
     /// Whether there are none.

@@ -162,8 +162,8 @@ fn outdoors<S: Real>(plan: &Plan, index: SideId, side: &Side, values: &Values<'_
     let wall = &plan.description.surfaces[index.wall()];
     let (mut plane, heading) = plane(wall, index, side, values);
     let free = plan.takes_from_measured(index).then(|| {
-        let sky_view = (S::one() + plane.normal[2]).scale(0.5);
-        Box::new(Plane { sky_view, ..plane })
+        let [sky_view, ground_view] = by_tilt(plane.normal[2]);
+        Box::new(Plane { sky_view, ground_view, ..plane })
     });
     let horizon = &plan.description.site.horizon;
     if !horizon.is_empty() {
@@ -199,9 +199,16 @@ fn plane<S: Real>(wall: &Surface, index: SideId, side: &Side, values: &Values<'_
     let outward = outward::<S>(index);
     let (sin_tilt, cos_tilt) = (sin_of_degrees(tilt), cos_of_degrees(tilt) * outward);
     let heading = [cos_of_degrees(azimuth) * outward, sin_of_degrees(azimuth) * outward];
-    let sky_view = side.sky_view.map_or_else(|| (S::one() + cos_tilt).scale(0.5), |id| values.get(id));
+    let [sky, ground] = by_tilt(cos_tilt);
+    let [sky_view, ground_view] = [(side.sky_view, sky), (side.ground_view, ground)]
+        .map(|(given, by_tilt)| given.map_or(by_tilt, |id| values.get(id)));
     let normal = [heading[1] * sin_tilt, heading[0] * sin_tilt, cos_tilt];
-    (Plane { normal, sin_tilt, sky_view, ground_view: (S::one() - cos_tilt).scale(0.5) }, heading)
+    (Plane { normal, sin_tilt, sky_view, ground_view }, heading)
+}
+
+/// View factors of a free plane to sky and ground [-], by the cosine of its tilt.
+fn by_tilt<S: Real>(cosine: S) -> [S; 2] {
+    [(S::one() + cosine).scale(0.5), (S::one() - cosine).scale(0.5)]
 }
 
 /// Wind at a height of the site over the wind at the mast [-]: `(delta_mast/z_mast)^a_mast (z/delta)^a`.

@@ -28,6 +28,7 @@ pub(super) fn check_air(description: &Description) -> Checked {
     for control in &description.controls {
         check_control(description, control)?;
     }
+    check_makeup(description)?;
     for (index, zone) in description.zones.iter().enumerate() {
         if zone.solar_to_air.is_some() && window_between_zones(description, index) {
             return refuse(
@@ -92,6 +93,26 @@ fn check_vent(description: &Description, vent: &Vent) -> Checked {
         Some(WindPressure::Table { coefficients }) => check_finite(&place, coefficients),
         Some(WindPressure::LowRise { .. }) | None => Ok(()),
     }
+}
+
+/// Vents join a zone with outdoors that they bring make-up air into.
+fn check_makeup(description: &Description) -> Checked {
+    let mut joined = vec![false; description.zones.len()];
+    for _ in 0..joined.len() {
+        for vent in &description.vents {
+            match vent.to {
+                None => joined[vent.zone] = true,
+                Some(to) => {
+                    let either = joined[vent.zone] || joined[to];
+                    (joined[vent.zone], joined[to]) = (either, either);
+                }
+            }
+        }
+    }
+    let lacks = description.zones.iter().zip(joined).find(|(zone, joined)| zone.makeup_by_vents && !joined);
+    lacks.map_or(Ok(()), |(zone, _)| {
+        refuse(format_args!("zone {}", zone.name), "make-up air by vents", "vents that lead from it outdoors")
+    })
 }
 
 fn check_control(description: &Description, control: &VentControl) -> Checked {

@@ -213,6 +213,7 @@ fn parts_that_need_each_other_come_together() {
     refused(|d| d.surfaces[2].inside.convection = None, &["partition, inside", "convection"]);
     refused(|d| d.surfaces[1].outside.facing = Facing::Adiabatic, &["window", "between outdoors"]);
     refused(|d| d.zones[0].ventilation[0].flow = None, &["ventilation fan", "either air changes or a flow"]);
+    refused(|d| d.zones[0].makeup_by_vents = true, &["zone south", "make-up air by vents", "lead from it"]);
     refused(|d| d.constructions[0].layers.clear(), &["construction wall", "neither"]);
     refused(|d| d.constructions[0].layers[0].nodes = 0, &["layer board", "at least one node"]);
     refused(|d| d.constructions[0].layers[1].nodes = 1, &["layer gap", "without nodes"]);

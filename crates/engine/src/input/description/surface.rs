@@ -92,6 +92,9 @@ pub struct Side {
     /// Fraction of the sky seen past all obstacles [-]; none: (1 + cos tilt)/2, less what obstacles cover.
     #[serde(default)]
     pub sky_view: Option<ParamId>,
+    /// Fraction of the ground seen past all obstacles [-], for the sun that it reflects; none: (1 - cos tilt)/2, less what obstacles cover.
+    #[serde(default)]
+    pub ground_view: Option<ParamId>,
     /// Height of the surface above ground for the wind profile [m]; none: mast wind is used as it is.
     #[serde(default)]
     pub height: Option<ParamId>,

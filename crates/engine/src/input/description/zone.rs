@@ -54,6 +54,9 @@ pub struct Zone {
     /// Share of the mean radiant temperature in the temperature that set points of heating and cooling hold [-]. None: the air alone.
     #[serde(default)]
     pub setpoint_radiant_share: Option<ParamId>,
+    /// Whether what fans take out of the zone and do not bring in comes through the pressure network; else by leaks from outdoors.
+    #[serde(default)]
+    pub makeup_by_vents: bool,
 }
 
 /// A vertical gradient of the air temperature of a zone, about its mean at middle height.

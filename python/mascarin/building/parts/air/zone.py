@@ -405,10 +405,11 @@ class Zone(Part):
         default_factory=dict, description="Thermal bridges of the zone, by name"
     )
     solar_to_air: q.SolarToAir | None = None
-    makeup_air: Literal["outdoors"] | None = Field(
+    makeup_air: Literal["outdoors", "vents"] | None = Field(
         None,
         description="Where the air comes from that fans take out of the zone and do not bring in, and "
-        "where it goes to that they bring in too much: outdoors, through leaks; none: flows must balance",
+        "where it goes to that they bring in too much: outdoors, through leaks, or vents, through the "
+        "pressure network; none: flows must balance",
     )
 
     @model_validator(mode="before")

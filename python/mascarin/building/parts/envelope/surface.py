@@ -270,6 +270,7 @@ class Side(Part):
     absorptance: q.Absorptance | None = None
     area_factor: q.AreaFactor | None = None
     sky_view: q.SkyView | None = None
+    ground_view: q.GroundView | None = None
     height: q.Height | None = None
     longwave: OutdoorLongwave | None = Field(
         None, description="Exchange with sky, air and ground; none: exact"
@@ -371,6 +372,7 @@ class Side(Part):
             "emissivity": bool(self.outdoors or self.zone is not None),
             "absorptance": self.sunlit or self.zone is not None or self.irradiance is not None,
             "sky_view": self.sunlit or self.exposed.sky,
+            "ground_view": self.sunlit,
             "height": self.exposed.wind,
             "longwave": bool(self.outdoors),
             "irradiance": self.exposed.sun or (self.measured is not None and air),
@@ -389,7 +391,8 @@ class Side(Part):
 
     def _sheltered(self, key: str) -> str:
         """The missing part of the weather, where a key has no effect because of it."""
-        away = {"absorptance": "sun", "sky_view": "sun or sky", "height": "wind", "irradiance": "sun"}
+        away = {"sky_view": "sun or sky", "height": "wind"}
+        away |= dict.fromkeys(("absorptance", "ground_view", "irradiance"), "sun")
         return f" without {away[key]}" if self.outdoors and key in away else ""
 
     def _unexposed(self) -> list[InitErrorDetails]:
@@ -476,13 +479,9 @@ class Surface(Part):
                 )
             ]
         if self.internal_mass and not same:
+            wrong = "true, but the sides face different things"
             return [
-                fault(
-                    ("internal_mass",),
-                    "true, but the sides face different things",
-                    "both sides facing one zone",
-                    "Remove 'internal_mass:'.",
-                )
+                fault(("internal_mass",), wrong, "both sides facing one zone", "Remove 'internal_mass:'.")
             ]
         return []
 

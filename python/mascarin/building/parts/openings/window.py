@@ -54,6 +54,7 @@ class WindowOutside(Part):
     )
     behind_obstacles: bool | None = Field(None, description=BEHIND_OBSTACLES)
     sky_view: q.SkyView | None = None
+    ground_view: q.GroundView | None = None
     height: q.Height | None = None
     longwave: OutdoorLongwave | None = Field(
         None, description="Exchange with sky, air and ground; none: exact"
