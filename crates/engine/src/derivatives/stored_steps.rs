@@ -63,6 +63,13 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         }
     }
 
+    /// Keeps the factors of walls of several stage lengths: for steps of unequal length.
+    pub(super) fn keep_factors(&mut self) {
+        for stage in &mut self.stages {
+            stage.matrix.keep_factors();
+        }
+    }
+
     /// Takes an action whose solution is known.
     pub(super) fn take(
         &mut self,
