@@ -37,6 +37,9 @@ type EnsembleArrays<'py> = (Bound<'py, PyArray3<f64>>, [Bound<'py, PyArray1<f64>
 /// Records and their slopes.
 type JacobianArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>);
 
+/// Halvings of each step, and estimated errors.
+type ChosenSteps<'py> = (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>);
+
 #[pymethods]
 #[allow(clippy::needless_pass_by_value, reason = "the binding hands arrays over by value")]
 impl Plan {
@@ -193,7 +196,7 @@ impl Plan {
         options: RunOptions,
         tolerance: f64,
         most_halvings: u8,
-    ) -> PyResult<(Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>)> {
+    ) -> PyResult<ChosenSteps<'py>> {
         caught(|| {
             let options = options.read()?;
             let numbers = contiguous(values.as_slice())?;

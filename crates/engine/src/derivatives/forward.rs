@@ -10,7 +10,6 @@ use crate::input::forcing::Forcing;
 use crate::number::dual::Dual;
 use crate::number::real::Real;
 use crate::run::options::Options;
-use crate::run::outputs::Output;
 use crate::run::records::RecordRow;
 use crate::run::simulate::simulate_observed;
 use crate::step::Stepper;
@@ -133,13 +132,7 @@ fn run_with_slopes(
     let mut groups: Vec<_> = vectors
         .iter()
         .map(|(numbers, parameters)| {
-            let mut stepper = DerivativeStepper::new(plan, numbers, options.scheme.converged());
-            if options.lengths.is_some() {
-                stepper.keep_factors();
-            }
-            if options.outputs.iter().any(Output::averages_absorbed_sun) {
-                stepper.linearized_stepper.average_absorbed_sun();
-            }
+            let stepper = DerivativeStepper::of_run(plan, numbers, options);
             let state = stepper.linearized_stepper.begin(&options.initial, weather.row(0, 0));
             Group {
                 state,

@@ -12,7 +12,6 @@ use crate::input::forcing::Forcing;
 use crate::linear::unknowns::Unknowns;
 use crate::number::tape::{Tape, Taped};
 use crate::run::options::Options;
-use crate::run::outputs::Output;
 use crate::run::simulate::{Run, simulate_observed};
 use crate::run::{Action, Recorded};
 use crate::step::Stepper;
@@ -140,13 +139,7 @@ impl<'a> ReversePass<'a> {
         options: &'a Options,
         (reached, records): (&State<f64>, &'a [f64]),
     ) -> Self {
-        let mut stepper = DerivativeStepper::new(plan, leaves, options.scheme.converged());
-        if options.lengths.is_some() {
-            stepper.keep_factors();
-        }
-        if options.outputs.iter().any(Output::averages_absorbed_sun) {
-            stepper.linearized_stepper.average_absorbed_sun();
-        }
+        let stepper = DerivativeStepper::of_run(plan, leaves, options);
         let length = Tape::len();
         let now = stepper.linearized_stepper.begin(&options.initial, weather.row(0, 0));
         Tape::truncate(length);

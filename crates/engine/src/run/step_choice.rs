@@ -7,11 +7,13 @@
 //! record interval halved some times, and each step starts at a multiple of its length.
 
 use crate::balance::energy_balance::EnergyBalance;
-use crate::building::plan::{Plan, SideRole};
+use crate::building::ids::SideId;
+use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::run::action::Action;
 use crate::run::options::{Options, Warmup};
+use crate::run::step_lengths::{MOST_HALVINGS, halved};
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
 use crate::step::halving::Part;
@@ -24,6 +26,8 @@ use crate::weather::conditions::Weather;
 const ERROR_OF_DIFFERENCE: f64 = 4.0 / 3.0;
 /// The error of a step grows by this factor with twice its length, for a scheme of second order [-].
 const GROWTH: f64 = 8.0;
+/// Steps in which a control changes its mind are no longer than this, where they can be: controls decide at the beginning of a step [s].
+const OF_DECISION: f64 = 60.0;
 /// A change of a humidity ratio as a change of temperature, by the latent heat over the specific heat of air [K].
 const RATIO_AS_KELVIN: f64 = 2500.0;
 
@@ -62,6 +66,9 @@ pub fn choose_steps(
         return Err(EngineError::Input("steps are chosen in the weather of one length at least".to_owned()));
     };
     let deepest = forcings.len() - 1;
+    if deepest > usize::from(MOST_HALVINGS) || criterion.most_halvings > MOST_HALVINGS {
+        return Err(EngineError::Input(format!("a record interval is halved at most {MOST_HALVINGS} times")));
+    }
     let mut fixed =
         Options { dt: options.dt / f64::from(1_u32 << deepest), lengths: None, ..options.clone() };
     fixed.warmup = options.warmup.map(|warmup| Warmup { steps: warmup.steps << deepest, ..warmup });
@@ -86,7 +93,7 @@ pub fn choose_steps(
     let depth = u32::from(criterion.most_halvings).max(u32::try_from(deepest).unwrap_or(0)) + 1;
     let jumps = Action::first(options) == Action::FirstStep;
     let history = stepper.history();
-    let start = Reached { state, history };
+    let start = Reached { state, history, decides: false };
     let mut pilot = Pilot { stepper, weathers, dt: options.dt, depth, jumps, control };
     pilot.choose(start, first.steps() << depth, criterion)
 }
@@ -96,6 +103,8 @@ pub fn choose_steps(
 struct Reached {
     state: State<f64>,
     history: History<f64>,
+    /// Whether a control decides otherwise at its end.
+    decides: bool,
 }
 
 /// A run along which steps are chosen.
@@ -144,7 +153,8 @@ impl Pilot<'_, '_> {
             let error = match self.step(&half, at + unit / 2, level + 1) {
                 Ok(reached) => {
                     let error = self.difference(&whole.state, &reached.state) * ERROR_OF_DIFFERENCE;
-                    if error <= criterion.tolerance || last {
+                    let hides = self.hides_decision(level, [&whole, &half, &reached]);
+                    if (error <= criterion.tolerance && !hides) || last {
                         now = reached;
                         at += unit;
                         choice.halvings.push(u8::try_from(level).unwrap_or(u8::MAX));
@@ -152,7 +162,7 @@ impl Pilot<'_, '_> {
                         level = self.next_level(level, at, error * GROWTH <= criterion.tolerance);
                         continue;
                     }
-                    error
+                    if hides { criterion.tolerance.max(error) } else { error }
                 }
                 Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
                 Err(error) if last => return Err(error),
@@ -191,7 +201,7 @@ impl Pilot<'_, '_> {
         let deepest = u32::try_from(self.weathers.len() - 1).unwrap_or(0);
         let of_weather = level.min(deepest);
         let (weather, bits) = (&self.weathers[of_weather as usize], self.depth - of_weather);
-        let (step, dt) = (at >> bits, self.dt * 0.5_f64.powi(of_weather.cast_signed()));
+        let (step, dt) = (at >> bits, self.dt * halved(of_weather));
         let mut unused = EnergyBalance::new();
         if at == 0 && self.jumps && level <= deepest {
             self.stepper.first_step(&mut state, weather, dt, &mut unused)?;
@@ -199,30 +209,55 @@ impl Pilot<'_, '_> {
             self.stepper.step(&mut state, weather, step, dt, &mut unused)?;
         } else {
             let within = at - (step << bits);
-            let share = 0.5_f64.powi((level - of_weather).cast_signed());
+            let share = halved(level - of_weather);
             let from = within as f64 / (1_usize << bits) as f64;
             let part = Part { step, from, share, halvings: level - of_weather };
             self.stepper.part_of_step(&mut state, weather, part, dt, &mut unused)?;
         }
-        Ok(Reached { state, history: self.stepper.history() })
+        let decides = self.decides(&state, weather.row(step, self.stepper.scheme.weights().len() - 1));
+        Ok(Reached { state, history: self.stepper.history(), decides })
     }
 
-    /// Largest difference of two states in airs, surfaces of zones and humidity of airs [K].
+    /// Whether a control decides otherwise in a state, and in a row of the forcing.
+    fn decides(&self, state: &State<f64>, row: &[f64]) -> bool {
+        if state.opened.is_empty() {
+            return false;
+        }
+        let mut next = state.clone();
+        self.stepper.control_vents(&mut next, row, 0.0);
+        next.opened != state.opened
+    }
+
+    /// Whether a step has to be shorter, because a control decides otherwise in it or at its end.
+    fn hides_decision(&self, level: u32, reached: [&Reached; 3]) -> bool {
+        let length = self.dt * halved(level);
+        length > OF_DECISION && reached.iter().any(|reached| reached.decides)
+    }
+
+    /// Largest difference of two states in airs, their humidity, and means over the surfaces of a zone by area [K]. Single surfaces follow
+    /// the weather within seconds, and forget it as fast.
     fn difference(&self, a: &State<f64>, b: &State<f64>) -> f64 {
-        let plan = self.stepper.model.plan;
-        let airs = a.air.iter().zip(&b.air).map(|(a, b)| (a - b).abs());
-        let surfaces = plan.surfaces.iter().zip(a.surfaces.iter().zip(b.surfaces.iter()));
-        let inside = surfaces.filter(|(surface, _)| matches!(surface.role, SideRole::Zone { .. }));
-        let inside = inside.map(|(_, (a, b))| (a - b).abs());
+        let (plan, walls) = (self.stepper.model.plan, &self.stepper.model.coefficients.walls);
+        let mean = |surfaces: &[SideId]| {
+            let (mut sum, mut areas) = (0.0, 0.0);
+            for &surface in surfaces {
+                let area = walls[surface.wall()].area;
+                sum += area * (a.surfaces[surface] - b.surfaces[surface]);
+                areas += area;
+            }
+            if areas > 0.0 { sum / areas } else { 0.0 }
+        };
+        let radiant = plan.zones.iter().map(|zone| mean(&zone.surfaces));
+        let airs = a.air.iter().zip(&b.air).map(|(a, b)| a - b);
         let ratios = a.vapour.iter().zip(&b.vapour).take(a.air.len());
-        let ratios = ratios.map(|(a, b)| (a - b).abs() * RATIO_AS_KELVIN);
+        let ratios = ratios.map(|(a, b)| (a - b) * RATIO_AS_KELVIN);
         let mut largest = 0.0_f64;
-        for difference in airs.chain(inside).chain(ratios) {
+        for difference in airs.chain(radiant).chain(ratios) {
             // What is not a number is no small difference.
             if difference.is_nan() {
                 return f64::INFINITY;
             }
-            largest = largest.max(difference);
+            largest = largest.max(difference.abs());
         }
         largest
     }

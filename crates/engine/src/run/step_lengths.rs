@@ -59,9 +59,14 @@ impl StepLengths {
     /// Length of a step, in record intervals.
     #[inline(always)]
     pub(crate) fn share(&self, step: usize) -> f64 {
-        // A power of two: products with it are exact.
-        2.0_f64.powi(-i32::from(self.halvings[step]))
+        halved(u32::from(self.halvings[step]))
     }
+}
+
+/// One halved some times: a power of two, products with it are exact.
+#[inline(always)]
+pub(crate) fn halved(times: u32) -> f64 {
+    1.0 / f64::from(1_u32 << times)
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_weather};
 use crate::common::glazed::{glazed_outputs, glazed_rooms};
 use crate::common::{
-    Builder, cell, cell_members, cell_outputs, cell_weather, facing, forcing, forcing_over, options, position,
-    set, try_run, values, warmup, weather,
+    Builder, cell, cell_members, cell_outputs, cell_weather, facing, forcing, forcing_over, options,
+    position, set, try_run, values, warmup, weather,
 };
 use mascarin_engine::derivatives::{Trajectory, jacobian};
 use mascarin_engine::description::Facing;
@@ -60,8 +60,10 @@ fn equal_lengths_have_the_bits_of_a_fixed_step() {
             record_every: 1 << halved,
             ..options(SCHEME, dt, conditioned_outputs())
         };
-        let unequal = with_lengths(Options { dt: HOUR, record_every: 1, ..fixed.clone() }, &vec![halved; steps]);
-        let [fixed, unequal] = [fixed, unequal].map(|options| try_run(&plan, &values(&plan), &rows, &options).unwrap());
+        let unequal =
+            with_lengths(Options { dt: HOUR, record_every: 1, ..fixed.clone() }, &vec![halved; steps]);
+        let [fixed, unequal] =
+            [fixed, unequal].map(|options| try_run(&plan, &values(&plan), &rows, &options).unwrap());
         assert_eq!(fixed.energy_balance.closure().to_bits(), unequal.energy_balance.closure().to_bits());
         assert_eq!((fixed.cycles, fixed.counters.iterations), (unequal.cycles, unequal.counters.iterations));
         let outputs = conditioned_outputs();
@@ -81,7 +83,11 @@ fn equal_lengths_have_the_bits_of_a_fixed_step() {
 #[test]
 fn means_weigh_by_length() {
     let plan = Plan::new(conditioned(0.04)).unwrap();
-    let outputs = vec![Output::HeatingLoad { zone: 0 }, Output::CoolingLoad { zone: 0 }, Output::AirTemperature { zone: 0 }];
+    let outputs = vec![
+        Output::HeatingLoad { zone: 0 },
+        Output::CoolingLoad { zone: 0 },
+        Output::AirTemperature { zone: 0 },
+    ];
     let halvings = mixed(48);
     let rows = forcing_over(&plan, SCHEME, starts(&halvings).into_iter(), conditioned_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
@@ -93,18 +99,27 @@ fn means_weigh_by_length() {
     // The sum of the loads over all hours is the heat of the balance, by its own sum over all stages.
     let sums = [0, 1].map(|k| run.records.chunks(3).skip(1).map(|row| row[k]).sum::<f64>() * HOUR);
     let into = run.energy_balance.into;
-    let [heating, cooling] = [mascarin_engine::energy_balance::Flow::Heating, mascarin_engine::energy_balance::Flow::Cooling]
-        .map(|flow| into[flow as usize]);
+    let [heating, cooling] =
+        [mascarin_engine::energy_balance::Flow::Heating, mascarin_engine::energy_balance::Flow::Cooling]
+            .map(|flow| into[flow as usize]);
     assert!(heating > 1e5 || cooling.abs() > 1e5, "{heating} {cooling}");
     for (sum, heat) in sums.into_iter().zip([heating, cooling.abs()]) {
         assert!((sum - heat).abs() < 1e-9 * (heating + cooling.abs()), "{sum} J is not {heat} J");
     }
     // In blocks and in an ensemble, too.
     let mut blocks: Vec<f64> = Vec::new();
-    mascarin_engine::run::simulate_in_blocks(&plan, &numbers, &drive, &given, &RunControl::default(), 7, |block| {
-        blocks.extend(block);
-        Ok(())
-    })
+    mascarin_engine::run::simulate_in_blocks(
+        &plan,
+        &numbers,
+        &drive,
+        &given,
+        &RunControl::default(),
+        7,
+        |block| {
+            blocks.extend(block);
+            Ok(())
+        },
+    )
     .unwrap();
     assert_eq!(bits(&blocks), bits(&run.records));
 }
@@ -116,10 +131,14 @@ fn members_have_the_bits_of_their_runs() {
     let plan = Plan::new(cell(0.04)).unwrap();
     let rows = forcing_over(&plan, SCHEME, starts(&halvings).into_iter(), cell_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let steps = halvings.iter().scan(0.0, |at, &count| { *at += 0.5_f64.powi(i32::from(count)); Some(*at) });
+    let steps = halvings.iter().scan(0.0, |at, &count| {
+        *at += 0.5_f64.powi(i32::from(count));
+        Some(*at)
+    });
     let first = 1 + steps.take_while(|&at| at < 24.0).count();
     let warm = mascarin_engine::run::Warmup { steps: first, ..warmup(HOUR) };
-    let given = with_lengths(Options { warmup: Some(warm), ..options(SCHEME, HOUR, cell_outputs()) }, &halvings);
+    let given =
+        with_lengths(Options { warmup: Some(warm), ..options(SCHEME, HOUR, cell_outputs()) }, &halvings);
     let members = cell_members(&plan, 13);
     let together = ensemble(&plan, &members, &drive, &given, &RunControl::default()).unwrap();
     let (width, length) = (values(&plan).len(), together.records.len() / 13);
@@ -133,8 +152,16 @@ fn members_have_the_bits_of_their_runs() {
         let rows = forcing_over(&plan, SCHEME, starts(&halvings).into_iter(), weather);
         let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
         let given = with_lengths(options(SCHEME, HOUR, glazed_outputs()), &halvings);
-        let members = [values(&plan), values(&plan).iter().map(|value| value * 0.97).collect(), values(&plan)].concat();
-        let together = ensemble(&plan, &[members.clone(), members.clone()].concat(), &drive, &given, &RunControl::default()).unwrap();
+        let members =
+            [values(&plan), values(&plan).iter().map(|value| value * 0.97).collect(), values(&plan)].concat();
+        let together = ensemble(
+            &plan,
+            &[members.clone(), members.clone()].concat(),
+            &drive,
+            &given,
+            &RunControl::default(),
+        )
+        .unwrap();
         let alone = try_run(&plan, &values(&plan), &rows, &given).unwrap();
         assert_eq!(bits(&alone.records), bits(&together.records[..alone.records.len()]));
     }
@@ -150,7 +177,8 @@ fn derivatives_along_unequal_steps() {
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let given = with_lengths(options(SCHEME, HOUR, outputs.clone()), &halvings);
     let numbers = values(&plan);
-    let which = numbers.iter().enumerate().position(|(k, _)| plan.description.parameters[k].path.contains("volume"));
+    let which =
+        numbers.iter().enumerate().position(|(k, _)| plan.description.parameters[k].path.contains("volume"));
     let which = which.unwrap();
     let watch = RunControl::default();
     let forward = jacobian(&plan, &numbers, &[which], &drive, &given, &watch).unwrap();
@@ -168,10 +196,16 @@ fn derivatives_along_unequal_steps() {
         let weights: Vec<f64> = (0..forward.records.len()).map(|i| f64::from(u8::from(i % 2 == k))).collect();
         let pulled = trajectory.pull(&plan, &numbers, &drive, &given, &watch, &weights).unwrap()[which];
         let sum: f64 = forward.slopes.iter().zip(&weights).map(|(slope, weight)| slope * weight).sum();
-        let scale: f64 = forward.slopes.iter().zip(&weights).map(|(slope, weight)| (slope * weight).abs()).sum();
-        let quotient: f64 = high.iter().zip(&low).zip(&weights).map(|((a, b), weight)| (a - b) * weight).sum::<f64>() / (2.0 * step);
+        let scale: f64 =
+            forward.slopes.iter().zip(&weights).map(|(slope, weight)| (slope * weight).abs()).sum();
+        let quotient: f64 =
+            high.iter().zip(&low).zip(&weights).map(|((a, b), weight)| (a - b) * weight).sum::<f64>()
+                / (2.0 * step);
         assert!((pulled - sum).abs() < 1e-9 * scale, "{output:?}: reverse {pulled}, forward {sum}");
-        assert!((quotient - sum).abs() < 2e-4 * scale, "{output:?}: difference {quotient}, forward {sum}, of {scale}");
+        assert!(
+            (quotient - sum).abs() < 2e-4 * scale,
+            "{output:?}: difference {quotient}, forward {sum}, of {scale}"
+        );
     }
 }
 
@@ -190,10 +224,20 @@ fn sheet() -> Plan {
 }
 
 fn chosen(plan: &Plan, tolerance: f64, hours: usize, fill: impl Fn(f64, &mut [f64])) -> StepChoice {
-    let levels = [1_usize, 2, 4].map(|parts| forcing(plan, SCHEME, hours * parts, HOUR / parts as f64, &fill));
-    let drives: Vec<_> = levels.iter().map(|rows| Forcing::new(rows, 2, plan.n_channels()).unwrap()).collect();
+    let levels =
+        [1_usize, 2, 4].map(|parts| forcing(plan, SCHEME, hours * parts, HOUR / parts as f64, &fill));
+    let drives: Vec<_> =
+        levels.iter().map(|rows| Forcing::new(rows, 2, plan.n_channels()).unwrap()).collect();
     let criterion = Criterion { tolerance, most_halvings: 9 };
-    choose_steps(plan, &values(plan), &drives, &options(SCHEME, HOUR, Vec::new()), criterion, &RunControl::default()).unwrap()
+    choose_steps(
+        plan,
+        &values(plan),
+        &drives,
+        &options(SCHEME, HOUR, Vec::new()),
+        criterion,
+        &RunControl::default(),
+    )
+    .unwrap()
 }
 
 /// Air outside that jumps after some hours: the air of the room follows with a time constant that the steps resolve where it moves, and long
@@ -213,7 +257,8 @@ fn steps_follow_a_jump() {
     for tolerance in [0.003, 0.03, 0.3] {
         let choice = chosen(&plan, tolerance, 60, fill);
         assert!(choice.errors.iter().all(|&error| error <= tolerance), "{tolerance} K");
-        let worst = records(&choice.halvings).iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let worst =
+            records(&choice.halvings).iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst <= tolerance, "{worst} K with a tolerance of {tolerance} K");
         let shortest = choice.halvings.iter().copied().max().unwrap();
         // Before the jump nothing moves; steps of one length would be many times as many.

@@ -96,8 +96,13 @@ class StepSequence:
 
     @property
     def fixed_count(self) -> int:
-        """Steps of one length over the same period, as long as the shortest of these."""
-        return round(float(self.edges[-1] / self.lengths.min()))
+        """Steps of one length over the same period, as long as the shortest after the first interval."""
+        return round(float(self.edges[-1] / self.shortest))
+
+    @property
+    def shortest(self) -> float:
+        """Shortest step after the first record interval. [s]"""
+        return float(_after_start(self.halvings, self.lengths).min())
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON; the sequence as counts and numbers of halvings."""
@@ -106,7 +111,7 @@ class StepSequence:
             "tolerance_K": self.tolerance,
             "record_interval_s": self.interval,
             "steps": len(self.halvings),
-            "shortest_s": float(self.lengths.min()),
+            "shortest_s": self.shortest,
             "longest_s": float(self.lengths.max()),
             "estimated_error_K": self.error,
             "steps_of_the_shortest_length": self.fixed_count,
@@ -226,17 +231,27 @@ def chosen_sequence(
     options = {**settings, "outputs": "[]", "record_from": 0, "record_every": 1}
     with translated(dated):
         halvings, errors = plan.choose_steps(vector, list(forcings), options, allowed, most)
-    sequence = StepSequence(halvings, interval, auto.tolerance, float(errors.max()))
+    judged = _after_start(halvings, errors)
+    sequence = StepSequence(halvings, interval, auto.tolerance, float(judged.max()))
     if sequence.error > allowed:
-        worst = int(np.argmax(errors))
+        worst = len(errors) - len(judged) + int(np.argmax(judged))
         when = local_time(start[0] + sequence.edges[worst], start[1])
         raise InputError(
             f"step: found a tolerance of {auto.tolerance:g} K, which steps of "
-            f"{length_words(float(sequence.lengths.min()))} do not meet from {when:%Y-%m-%d %H:%M:%S} "
+            f"{length_words(sequence.shortest)} do not meet from {when:%Y-%m-%d %H:%M:%S} "
             f"(estimated error of the step {sequence.error:.2g} K, expected {allowed:.2g} K at most). "
             f"Write 'auto {_rounded_up(sequence.error / SHARE):g}K', or state one length, such as 1min"
         )
     return sequence
+
+
+def _after_start(halvings: Halvings, values: Array) -> Array:
+    """Values of steps without those of the first record interval, where there are more.
+
+    A start fits the weather only roughly: surfaces without mass jump, and no step is short enough for them.
+    """
+    ends = np.cumsum(np.exp2(-halvings.astype(np.float64)))
+    return values[np.searchsorted(ends, 1.0) + 1 :] if ends[-1] > 1.0 else values
 
 
 def require_equal_steps(sequence: StepSequence | None, what: str) -> None:
