@@ -36,6 +36,7 @@ from mascarin.commands.options.places import lines_named
 from mascarin.commands.options.tables import compared_columns, period_of, print_comparison, run_inputs
 from mascarin.commands.view import require_html
 from mascarin.errors import InputError
+from mascarin.simulation.preparation.step_sequence import mesh_step
 from mascarin.simulation.records.provenance import words_of
 
 if TYPE_CHECKING:
@@ -257,7 +258,9 @@ def _compiled(
         chosen = [output.name for output in chosen_outputs(building, names)]
         names = list(dict.fromkeys([*chosen, *needed(building)]))
     simulation = Simulation(building, climate, step=step_of(step), outputs=names, **options)
-    _print_warnings(building, simulation.mesh_seconds, simulation.building_warnings)
+    _print_warnings(
+        building, mesh_step(simulation.step_seconds, simulation.sequence), simulation.building_warnings
+    )
     _print_steps(simulation)
     _print_cost(building, simulation)
     return simulation
@@ -296,7 +299,7 @@ def _write_report(file: Path, simulation: Simulation, results: Results, inputs: 
     from mascarin.pages.run.page import Notes, write
 
     start = "warning: "
-    lines = check(simulation.building, simulation.mesh_seconds)
+    lines = check(simulation.building, mesh_step(simulation.step_seconds, simulation.sequence))
     notes = Notes(
         outdoors=simulation.weather("air_temperature"),
         warnings=[line.removeprefix(start) for line in lines if line.startswith(start)],

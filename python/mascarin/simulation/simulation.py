@@ -81,8 +81,6 @@ class Simulation(VectorRuns):
         Time step; record interval, where steps are chosen. [s]
     sequence : StepSequence or None
         Steps that were chosen.
-    mesh_seconds : float
-        Length of step for which layers are divided into cells. [s]
     scheme : str
         Time-stepping scheme.
     outputs : list of Output
@@ -145,8 +143,8 @@ class Simulation(VectorRuns):
         self._replaced = prepare.changed_parameters(building, self.building, options.parameters)
         stated_start = prepare.read_initial(initial)
         self._first_period = seconds_of(first_period, "first_period")
-        self.mesh_seconds = step_sequence.mesh_step(self.step_seconds, auto)
-        description = self.building.to_engine(self.mesh_seconds, dict(ranges or {}))
+        mesh = step_sequence.mesh_step(self.step_seconds, auto)
+        description = self.building.to_engine(mesh, dict(ranges or {}))
         self.notes = description.notes
         forcing, inputs, self.sequence = prepare.chosen_forcing_of(
             auto, self.building, climate, description, times=self.times, scheme=scheme,

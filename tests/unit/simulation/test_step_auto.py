@@ -38,7 +38,7 @@ def room(**changes: Any) -> mc.Building:
 def fixed(halvings: int, **options: Any) -> mc.Results:
     """A run with the cells and records of one with chosen steps, its steps of one length."""
 
-    def chosen(auto: AutoStep, interval: float, _run: Any, forcings: Any, *_: Any) -> StepSequence:
+    def chosen(auto: AutoStep, interval: float, _run: Any, forcings: Any, *_: Any, **__: Any) -> StepSequence:
         count = len(forcings[0]) << halvings
         return StepSequence(np.full(count, halvings, dtype=np.uint8), interval, auto.tolerance, 0.0)
 
@@ -128,7 +128,9 @@ def test_what_was_chosen_is_stored_with_the_results(tmp_path: Path) -> None:
     stored = mc.Results.open(tmp_path / "run.nc").provenance.steps
     assert stored is not None
     assert stored == simulation.run().provenance.steps
-    halvings = [int(part.split("x")[1]) for part in stored["sequence"].split() for _ in range(int(part.split("x")[0]))]
+    halvings = [
+        int(part.split("x")[1]) for part in stored["sequence"].split() for _ in range(int(part.split("x")[0]))
+    ]
     assert simulation.sequence is not None
     assert halvings == simulation.sequence.halvings.tolist()
     assert "estimated error of a step" in words_of(stored)
@@ -160,7 +162,9 @@ def test_the_option_is_read(text: str, expected: AutoStep | None) -> None:
     assert auto_step(text) == expected
 
 
-@pytest.mark.parametrize("text", ["auto 0.02", "automatic", "auto 0K", "auto 50K", "auto 0.1K every day", "auto ..K"])
+@pytest.mark.parametrize(
+    "text", ["auto 0.02", "automatic", "auto 0K", "auto 50K", "auto 0.1K every day", "auto ..K"]
+)
 def test_what_cannot_be_read_is_refused(text: str) -> None:
     with pytest.raises(mc.InputError, match="step: found"):
         auto_step(text)

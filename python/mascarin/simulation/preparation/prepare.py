@@ -375,8 +375,9 @@ def chosen_forcing_of(
     )
     nominal = description.values  # noqa: PD011 (no pandas object)
     sequence = step_sequence.chosen_sequence(
-        auto, times.step, (plan_of(description.json), nominal), forcings, settings, (times.first, times.zone)
-    )
+        auto, times.step, (plan_of(description.json), nominal), forcings, settings, (times.first, times.zone),
+        controlled=bool(building.controls),
+    )  # fmt: skip
     return *made(times=times, halvings=sequence.halvings), sequence
 
 

@@ -42,7 +42,7 @@ _MESH: Final = 900.0
 #: Schemes of second order, for which the error of a step is estimated.
 _SCHEMES: Final = ("sdirk2", "linearly-implicit")
 #: Largest estimated error of a step, as a part of the tolerance. Measured: docs/speed.md. [-]
-SHARE: Final = 0.5
+SHARE: Final = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,14 +164,14 @@ def record_interval(auto: AutoStep | None, step: str | float, climate: Climate, 
     return interval
 
 
-def mesh_step(interval: float, auto: AutoStep | None) -> float:
+def mesh_step(interval: float, auto: AutoStep | StepSequence | None) -> float:
     """Length of step for which layers are divided into cells. [s]
 
     Parameters
     ----------
     interval : float
         Step, or record interval. [s]
-    auto : AutoStep or None
+    auto : AutoStep, StepSequence or None
         Whether steps are chosen.
     """
     return interval if auto is None else min(interval, _MESH)
@@ -195,6 +195,8 @@ def chosen_sequence(
     forcings: Sequence[Array],
     settings: Mapping[str, Any],
     start: tuple[float, tzinfo],
+    *,
+    controlled: bool,
 ) -> StepSequence:
     """Choose the steps of a run.
 
@@ -212,6 +214,8 @@ def chosen_sequence(
         Those of a run with steps of the record interval.
     start : tuple of (float, tzinfo)
         Start in seconds since 1970-01-01 UTC [s], and zone, for messages.
+    controlled : bool
+        Whether the building has controls, which switch at the beginning of a step.
 
     Raises
     ------
@@ -231,7 +235,9 @@ def chosen_sequence(
     options = {**settings, "outputs": "[]", "record_from": 0, "record_every": 1}
     with translated(dated):
         halvings, errors = plan.choose_steps(vector, list(forcings), options, allowed, most)
-    judged = _after_start(halvings, errors)
+    # Where a control switches within a step, no length is short enough: that is no error of the scheme.
+    resolved = np.where((halvings == most) & controlled, 0.0, errors)
+    judged = _after_start(halvings, resolved)
     sequence = StepSequence(halvings, interval, auto.tolerance, float(judged.max()))
     if sequence.error > allowed:
         worst = len(errors) - len(judged) + int(np.argmax(judged))
