@@ -11,8 +11,11 @@ import pandas as pd
 import pytest
 
 import mascarin as mc
+from crossing_entrances import Bench
+from crossing_features import description
 from mascarin._io.durations import AutoStep, auto_step, record_seconds
 from mascarin.examples import box, box_climate
+from mascarin.fmu.export import export
 from mascarin.simulation.preparation import step_sequence
 from mascarin.simulation.preparation.step_sequence import StepSequence
 from mascarin.simulation.records.provenance import words_of
@@ -198,3 +201,26 @@ def test_what_needs_one_length_says_so() -> None:
         mc.state_space(box(), step="auto")
     with pytest.raises(mc.InputError, match="expected the interval of the records"):
         record_seconds("auto 0.1K")
+
+
+def test_a_unit_for_cosimulation_is_refused(tmp_path: Path) -> None:
+    simulation = mc.Simulation(room(), box_climate(), step="auto 0.5K every 1h", outputs=[AIR])
+    with pytest.raises(mc.InputError, match="its importing program steps it"):
+        export(simulation, tmp_path / "unit.fmu")
+
+
+def test_controls_switch_in_short_steps(tmp_path: Path) -> None:
+    """In every hour in which a control has changed its mind there is a step of a minute at most."""
+    bench = Bench(tmp_path / "room", description("controls"), step="auto 5K every 1h")
+    opened = [output.name for output in bench.building.outputs() if output.kind == "control_open"]
+    simulation = bench.simulation(*opened)
+    states = np.stack([np.asarray(simulation.run()[name]) for name in opened], axis=1)
+    changed = np.flatnonzero((np.diff(states, axis=0) != 0.0).any(axis=1))[1:]
+    assert changed.size > 0
+    assert simulation.sequence is not None
+    edges, lengths = simulation.sequence.edges, simulation.sequence.lengths
+    for hour in changed:
+        inside = (edges[:-1] >= hour * 3600.0) & (edges[:-1] < (hour + 1) * 3600.0)
+        assert lengths[inside].min() <= 60.0
+    # Far from them steps are long.
+    assert np.count_nonzero(lengths == 3600.0) >= 8
