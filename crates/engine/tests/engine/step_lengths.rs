@@ -24,7 +24,7 @@ const SCHEME: Scheme = Scheme::Sdirk2;
 /// Starts in their own lengths, and lengths [s].
 fn starts(halvings: &[u8]) -> Vec<(f64, f64)> {
     let mut at = 0.0;
-    let length = |count: u8| HOUR * 0.5_f64.powi(i32::from(count));
+    let length = |count: u8| HOUR / f64::from(1_u32 << count);
     let step = |&count: &u8| {
         let start = at / length(count);
         at += length(count);
@@ -132,7 +132,7 @@ fn members_have_the_bits_of_their_runs() {
     let rows = forcing_over(&plan, SCHEME, starts(&halvings).into_iter(), cell_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let steps = halvings.iter().scan(0.0, |at, &count| {
-        *at += 0.5_f64.powi(i32::from(count));
+        *at += 1.0 / f64::from(1_u32 << count);
         Some(*at)
     });
     let first = 1 + steps.take_while(|&at| at < 24.0).count();
