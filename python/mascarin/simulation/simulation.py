@@ -154,18 +154,14 @@ class Simulation(VectorRuns):
         self.channels = tuple(description.channels)
         self.initial = prepare.start_of(stated_start, self.building, description, forcing, self.times.start)
         self.compiled = CompiledRun(
-            description=description.json,
-            forcing=forcing,
-            paths=tuple(description.paths),
-            values=description.values,
+            description=description.json, forcing=forcing,
+            paths=tuple(description.paths), values=description.values,
             settings=prepare.settings_of(
                 self.initial, forcing, step_seconds=self.step_seconds, scheme=scheme,
                 first_period=self._first_period, sequence=self.sequence,
             ),
-            readings=Readings.of(self.outputs),
-            start=first,
-            timezone=zone_name(climate.grid.zone),
-            inputs=inputs,
+            readings=Readings.of(self.outputs), inputs=inputs,
+            start=first, timezone=zone_name(climate.grid.zone),
         )  # fmt: skip
         _ = self.compiled.plan  # the engine's own checks
         self._require_possible(self.values[None, :])
