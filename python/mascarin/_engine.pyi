@@ -280,6 +280,19 @@ class Plan:
         A direction names parameters that change together, and how much each changes.
         """
 
+    def choose_steps(
+        self,
+        values: _Array,
+        forcings: list[_Array],
+        options: dict[str, Any],
+        tolerance: float,
+        most_halvings: int,
+    ) -> tuple[npt.NDArray[np.uint8], _Array]:
+        """How often the record interval is halved for each step, and the estimated error of each. [K]
+
+        `forcings` has the weather in steps of the record interval, of half of it, and so on.
+        """
+
     def state_space(self, values: _Array) -> dict[str, Any]:
         """Matrices a, b, c, d and names of states, inputs and outputs of a linear building."""
 

@@ -117,6 +117,36 @@ def test_a_feature_runs_at_an_entrance_or_the_reason_is_said(
         assert reason in told.text
 
 
+# --- steps that are chosen ----------------------------------------------------------------------------------
+
+#: Entrances that need steps of one length, with words of the reason.
+OF_ONE_LENGTH: Final = {
+    "fmu": "expected one length",
+    "page": "expected one length",
+    "view": "expected one length",
+}
+
+
+@pytest.fixture(scope="module")
+def chosen(tmp_path_factory: pytest.TempPathFactory) -> Bench:
+    """The files of a room whose steps are chosen."""
+    folder = tmp_path_factory.mktemp("chosen") / "room"
+    return Bench(folder, description("loads"), step="auto 0.5K every 1h")
+
+
+@pytest.mark.parametrize("entrance", list(ENTRANCES))
+def test_chosen_steps_run_at_an_entrance_or_the_reason_is_said(chosen: Bench, entrance: str) -> None:
+    told = enter(entrance, chosen)
+    if entrance in OF_ONE_LENGTH:
+        assert told.code == 2, told.text[-2000:]
+        assert OF_ONE_LENGTH[entrance] in " ".join(told.text.split())
+    elif entrance == "linear model":
+        assert told.code == 2  # a zone that is heated; the model has no steps
+    else:
+        assert told.code in (0, 1), f"{entrance}: {told.text[-3000:]}"
+        assert "Traceback" not in told.text
+
+
 # --- warnings -----------------------------------------------------------------------------------------------
 
 #: Warnings of a run by their words, whoever says them: a run says "the energy balance does not close", an

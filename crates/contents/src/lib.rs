@@ -276,6 +276,7 @@ fn options(settings: Settings, outputs: Vec<Output>) -> Result<Options, String> 
     }
     Ok(Options {
         dt: settings.dt,
+        lengths: None,
         scheme,
         initial,
         warmup: (settings.warmup_steps > 0).then_some(Warmup {

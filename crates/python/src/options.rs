@@ -1,12 +1,14 @@
 //! Options of a run as they come from Python.
 
+use std::sync::Arc;
+
 use mascarin_engine::Scheme;
 use mascarin_engine::run::outputs::Output;
-use mascarin_engine::run::{Options, Warmup};
+use mascarin_engine::run::{Options, StepLengths, Warmup};
 use mascarin_engine::state::Initial;
 use pyo3::prelude::*;
 
-use crate::errors::EngineInputError;
+use crate::errors::{EngineInputError, to_python};
 
 fn scheme_named(name: &str) -> PyResult<Scheme> {
     match name {
@@ -54,6 +56,9 @@ pub struct RunOptions {
     outputs: String,
     record_from: usize,
     record_every: usize,
+    /// How often the record interval `dt` is halved for each step; all steps are `dt` where it is left out.
+    #[pyo3(default)]
+    halvings: Option<Vec<u8>>,
     /// Whether residuals are evaluated; not where it is left out.
     #[pyo3(default)]
     residuals: bool,
@@ -69,8 +74,10 @@ impl RunOptions {
             tolerance: self.warmup_tolerance,
             max_cycles: self.warmup_max_cycles,
         });
+        let lengths = self.halvings.map(StepLengths::new).transpose().map_err(|e| to_python(&e))?;
         Ok(Options {
             dt: self.dt,
+            lengths: lengths.map(Arc::new),
             scheme: scheme_named(&self.scheme)?,
             initial: self.initial.into(),
             warmup,

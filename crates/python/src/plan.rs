@@ -10,6 +10,7 @@ use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::run::ensemble;
 use mascarin_engine::run::physical_limits::Outlier;
 use mascarin_engine::run::ratings::window_ratings;
+use mascarin_engine::run::step_choice::{Criterion, choose_steps};
 use mascarin_engine::run::validity::OutOfRange;
 use mascarin_engine::run::{Run, simulate_in_blocks};
 use mascarin_engine::vapour::VapourFlow;
@@ -35,6 +36,9 @@ type EnsembleArrays<'py> = (Bound<'py, PyArray3<f64>>, [Bound<'py, PyArray1<f64>
 
 /// Records and their slopes.
 type JacobianArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>);
+
+/// Halvings of each step, and estimated errors.
+type ChosenSteps<'py> = (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>);
 
 #[pymethods]
 #[allow(clippy::needless_pass_by_value, reason = "the binding hands arrays over by value")]
@@ -179,6 +183,35 @@ impl Plan {
             let (rows, outputs) = (options.rows(drive.steps()), options.outputs.len());
             let records = PyArray1::from_vec(py, result.records).reshape([rows, outputs])?;
             Ok((records, PyArray1::from_vec(py, result.slopes).reshape([directions.len(), rows, outputs])?))
+        })
+    }
+
+    /// How often the record interval is halved for each step, and the estimated error of each [K]. `forcings` has the weather in steps of the
+    /// record interval, of half of it, and so on; warm-up steps are record intervals.
+    fn choose_steps<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+        forcings: Vec<PyReadonlyArray3<'py, f64>>,
+        options: RunOptions,
+        tolerance: f64,
+        most_halvings: u8,
+    ) -> PyResult<ChosenSteps<'py>> {
+        caught(|| {
+            let options = options.read()?;
+            let numbers = contiguous(values.as_slice())?;
+            let drives: Vec<_> = forcings
+                .iter()
+                .map(|forcing| {
+                    let (_, stages, channels) = forcing.as_array().dim();
+                    Forcing::new(contiguous(forcing.as_slice())?, stages, channels).map_err(|e| to_python(&e))
+                })
+                .collect::<PyResult<_>>()?;
+            let plan = &self.plan;
+            let criterion = Criterion { tolerance, most_halvings };
+            let choice =
+                attended(py, None, |watch| choose_steps(plan, numbers, &drives, &options, criterion, watch))?;
+            Ok((PyArray1::from_vec(py, choice.halvings), PyArray1::from_vec(py, choice.errors)))
         })
     }
 

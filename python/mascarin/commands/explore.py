@@ -18,16 +18,16 @@ from mascarin.commands.options.inputs import (
     Flag,
     MeasuredTable,
     Outside,
+    RunStep,
     Settings,
     Shift,
     Stamps,
-    Step,
     Weather,
     Zone,
     matching_outputs,
     read_building,
-    seconds,
     set_values,
+    step_of,
 )
 from mascarin.commands.options.places import lines_named
 from mascarin.commands.options.tables import run_inputs
@@ -57,7 +57,7 @@ def explore(
     band: Annotated[tuple[float, float], Parameter(negative="")] = (20.0, 26.0),
     start: str | None = None,
     end: str | None = None,
-    step: Step = "15min",
+    step: RunStep = "15min",
     out: Annotated[Path | None, Parameter(alias="-o")] = None,
     port: int = 0,
     no_open: Annotated[bool, Flag] = False,
@@ -109,7 +109,7 @@ def explore(
         options: dict[str, Any] = {
             "start": start,
             "end": end,
-            "step": seconds(step),
+            "step": step_of(step),
             "measurements": measured,
         }
         if end is None:

@@ -20,21 +20,24 @@ from mascarin.commands.options.inputs import (
     Compared,
     MeasuredTable,
     Outside,
+    RunStep,
     Settings,
     Shift,
     Stamps,
-    Step,
     Weather,
     Zone,
     matching_outputs,
     read_building,
     seconds,
+    step_of,
 )
 from mascarin.commands.options.output import print_json, print_table
 from mascarin.commands.options.places import lines_named
 from mascarin.commands.options.tables import compared_columns, period_of, print_comparison, run_inputs
 from mascarin.commands.view import require_html
 from mascarin.errors import InputError
+from mascarin.simulation.preparation.step_sequence import mesh_step
+from mascarin.simulation.records.provenance import words_of
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -62,7 +65,7 @@ def run(
     report: Path | None = None,
     start: str | None = None,
     end: str | None = None,
-    step: Step = "15min",
+    step: RunStep = "15min",
     interval: str | None = None,
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
     scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = "sdirk2",
@@ -254,8 +257,11 @@ def _compiled(
 
         chosen = [output.name for output in chosen_outputs(building, names)]
         names = list(dict.fromkeys([*chosen, *needed(building)]))
-    simulation = Simulation(building, climate, step=seconds(step), outputs=names, **options)
-    _print_warnings(building, simulation.step_seconds, simulation.building_warnings)
+    simulation = Simulation(building, climate, step=step_of(step), outputs=names, **options)
+    _print_warnings(
+        building, mesh_step(simulation.step_seconds, simulation.sequence), simulation.building_warnings
+    )
+    _print_steps(simulation)
     _print_cost(building, simulation)
     return simulation
 
@@ -293,7 +299,7 @@ def _write_report(file: Path, simulation: Simulation, results: Results, inputs: 
     from mascarin.pages.run.page import Notes, write
 
     start = "warning: "
-    lines = check(simulation.building, simulation.step_seconds)
+    lines = check(simulation.building, mesh_step(simulation.step_seconds, simulation.sequence))
     notes = Notes(
         outdoors=simulation.weather("air_temperature"),
         warnings=[line.removeprefix(start) for line in lines if line.startswith(start)],
@@ -356,6 +362,12 @@ def _print_warnings(building: Building, step: float, more: Sequence[str]) -> Non
     if assumed:
         values = "one assumed value" if assumed == 1 else f"{assumed} assumed values"
         print(f"{values}: 'mascarin check' lists {'it' if assumed == 1 else 'them'}", file=sys.stderr)
+
+
+def _print_steps(simulation: Simulation) -> None:
+    """Say which steps were chosen, and what steps of one length would take."""
+    if simulation.sequence is not None:
+        print(f"steps: {words_of(simulation.sequence.to_dict())}", file=sys.stderr)
 
 
 def _print_cost(building: Building, simulation: Simulation) -> None:

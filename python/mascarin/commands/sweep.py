@@ -18,14 +18,14 @@ from mascarin.commands.options.inputs import (
     Columns,
     MeasuredTable,
     Outside,
+    RunStep,
     Settings,
     Shift,
     Stamps,
-    Step,
     Weather,
     Zone,
     read_building,
-    seconds,
+    step_of,
 )
 from mascarin.commands.options.output import print_json, print_table
 from mascarin.commands.options.places import lines_named
@@ -57,7 +57,7 @@ def sweep(
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
     start: str | None = None,
     end: str | None = None,
-    step: Step = "15min",
+    step: RunStep = "15min",
     scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = "sdirk2",
     precision: Literal["double", "single"] = "double",
     workers: int | None = None,
@@ -124,7 +124,7 @@ def sweep(
         store = sweep_into(
             out, described, climate, table, measurements=measured, objectives=statistics,
             outputs=outputs or list(dict.fromkeys(statistic.output for statistic in statistics.values())),
-            step=seconds(step), scheme=scheme, precision=precision, start=start, end=end, workers=workers,
+            step=step_of(step), scheme=scheme, precision=precision, start=start, end=end, workers=workers,
             seed=None if samples is not None else seed, progress=progress,
         )  # fmt: skip
     return _print(store, as_json)

@@ -169,9 +169,11 @@ def run_chunk(
                 values = np.full((members.count, *objectives.shape[1:]), np.nan)
             values[batch], closure[batch], outside[batch] = objectives, run.residuals, run.outside
             beyond[batch] = run.beyond
-            step_errors[batch] = member_errors(
-                simulation.building, simulation.outputs, run.records, simulation.scheme
-            )
+            # The error of steps that are chosen is estimated before the run.
+            if simulation.sequence is None:
+                step_errors[batch] = member_errors(
+                    simulation.building, simulation.outputs, run.records, simulation.scheme
+                )
             failures |= {first + batch[failure.member]: failure.reason for failure in run.failures}
             for failure in run.failures:
                 values[batch[failure.member]] = np.nan

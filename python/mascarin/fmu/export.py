@@ -17,6 +17,7 @@ from mascarin.fmu.contents import packed, run_json
 from mascarin.fmu.inputs import chosen_inputs, global_follows
 from mascarin.fmu.model_description import LIBRARY, Model, fmi2, fmi3
 from mascarin.fmu.variables import Variable, variables_of
+from mascarin.simulation.preparation.step_sequence import require_equal_steps
 
 if TYPE_CHECKING:
     from mascarin.simulation import Simulation
@@ -82,6 +83,7 @@ def export(
     """
     if version not in VERSIONS:
         raise InputError(f"--fmi: found '{version}', expected one of {', '.join(VERSIONS)}")
+    require_equal_steps(simulation.sequence, "a unit for co-simulation: its importing program steps it")
     library = _library(version)
     channels = chosen_inputs(simulation, inputs)
     variables = variables_of(simulation, channels, parameters)

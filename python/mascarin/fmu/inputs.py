@@ -158,7 +158,8 @@ def _require_free(simulation: Simulation, channel: Channel) -> None:
                 simulation.building,
                 forcing,
                 simulation.channels,
-                (simulation.start, simulation.step_seconds),
+                simulation.compiled.start + simulation.compiled.edges,
+                simulation.times.zone,
             )
         except InputError as error:
             raise InputError(

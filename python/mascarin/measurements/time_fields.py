@@ -21,6 +21,23 @@ def _duration(text: str) -> str:
     return text
 
 
+def _run_step(text: str) -> str:
+    """A step of a run: a length, or `auto` with the interval of the records."""
+    from mascarin._io.durations import auto_step
+
+    try:
+        chosen = auto_step(text)
+    except InputError as error:
+        raise problem(f"'{text}'", "a length of time, or 'auto'", str(error)) from None
+    if chosen is not None and chosen.interval is None:
+        raise problem(
+            f"'{text}'",
+            "the interval of the records with it, which periods are whole numbers of",
+            f"Write 'auto {chosen.tolerance:g}K every 30min'.",
+        )
+    return text if chosen is not None else _duration(text)
+
+
 def _shift(text: str) -> str:
     """A shift of a clock that can be read."""
     from mascarin._io.durations import shift_of
@@ -75,6 +92,13 @@ Duration = Annotated[
     str,
     BeforeValidator(_seconds),
     AfterValidator(_duration),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}]}),
+]
+#: Step of a run; with `auto` steps are chosen.
+RunStep = Annotated[
+    str,
+    BeforeValidator(_seconds),
+    AfterValidator(_run_step),
     WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}]}),
 ]
 Shift = Annotated[

@@ -58,18 +58,23 @@ def of_short_run(simulation: Simulation, seconds: float = SHORT) -> tuple[RunWar
     seconds : float
         Length of the run. [s]
     """
-    steps = max(round(seconds / simulation.step_seconds), int(simulation.compiled.settings["warmup_steps"]))
-    return of_nominal(_shortened(simulation, steps))
+    repeated = float(simulation.compiled.edges[simulation.compiled.settings["warmup_steps"]])
+    intervals = round(max(seconds, repeated) / simulation.step_seconds)
+    return of_nominal(_shortened(simulation, intervals))
 
 
-def _shortened(simulation: Simulation, steps: int) -> Simulation:
-    """The same over fewer steps."""
-    forcing = simulation.compiled.forcing
-    if steps >= len(forcing):
+def _shortened(simulation: Simulation, intervals: int) -> Simulation:
+    """The same over fewer record intervals."""
+    compiled = simulation.compiled
+    if intervals >= compiled.intervals:
         return simulation
     times = simulation.times
-    last = times.first + steps * simulation.step_seconds
+    last = times.first + intervals * simulation.step_seconds
     shorter = copy.copy(simulation)
-    shorter.compiled = replace(simulation.compiled, forcing=forcing[:steps])
+    steps, settings = intervals, compiled.settings
+    if simulation.sequence is not None:
+        steps = simulation.sequence.count_in(intervals)
+        settings = {**settings, "halvings": settings["halvings"][:steps]}
+    shorter.compiled = replace(compiled, forcing=compiled.forcing[:steps], settings=settings)
     shorter.times = Times(times.first, last, simulation.step_seconds, times.zone)
     return shorter

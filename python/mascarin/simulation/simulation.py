@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mascarin._io.arguments import names_of
-from mascarin._io.durations import seconds_of
+from mascarin._io.durations import auto_step, seconds_of
 from mascarin.progress import reporting
 from mascarin.simulation import run_warnings
 from mascarin.simulation.checks import step_check
 from mascarin.simulation.checks.energy import EnergyLedger
 from mascarin.simulation.checks.judgement import Judgement
 from mascarin.simulation.checks.vapour import VapourLedger
+from mascarin.simulation.preparation import step_sequence
 from mascarin.simulation.preparation.engine_run import MEMORY, CompiledRun
 from mascarin.simulation.preparation.measured_planes import warnings_of_planes
 from mascarin.simulation.preparation.options import RunOptions, described
@@ -77,7 +78,9 @@ class Simulation(VectorRuns):
     start, end : pandas.Timestamp
         The period, in local time of the climate.
     step_seconds : float
-        Time step. [s]
+        Time step; record interval, where steps are chosen. [s]
+    sequence : StepSequence or None
+        Steps that were chosen.
     scheme : str
         Time-stepping scheme.
     outputs : list of Output
@@ -132,33 +135,33 @@ class Simulation(VectorRuns):
         self.climate, self._of_planes = climate, warnings_of_planes(self.building, climate, measurements)
         self.measured = None if measurements is None else summary_of_measurements(measurements)
         self.scheme: Scheme = scheme
-        self.step_seconds = seconds_of(step)
+        auto = auto_step(step)
+        self.step_seconds = step_sequence.record_interval(auto, step, climate, scheme)
         first, last = prepare.span(climate, start, end, self.step_seconds)
         self.times = Times(first, last, self.step_seconds, climate.grid.zone)
         self.outputs = prepare.chosen_outputs(self.building, outputs)
         self._replaced = prepare.changed_parameters(building, self.building, options.parameters)
         stated_start = prepare.read_initial(initial)
         self._first_period = seconds_of(first_period, "first_period")
-        description = self.building.to_engine(self.step_seconds, dict(ranges or {}))
+        mesh = step_sequence.mesh_step(self.step_seconds, auto)
+        description = self.building.to_engine(mesh, dict(ranges or {}))
         self.notes = description.notes
-        forcing, inputs = prepare.forcing_of(
-            self.building, climate, description, times=self.times, scheme=scheme, measurements=measurements
+        forcing, inputs, self.sequence = prepare.chosen_forcing_of(
+            auto, self.building, climate, description, times=self.times, scheme=scheme,
+            measurements=measurements, start=stated_start, first_period=self._first_period,
+            outputs=self.outputs,
         )  # fmt: skip
         self.channels = tuple(description.channels)
         self.initial = prepare.start_of(stated_start, self.building, description, forcing, self.times.start)
         self.compiled = CompiledRun(
-            description=description.json,
-            forcing=forcing,
-            paths=tuple(description.paths),
-            values=description.values,
+            description=description.json, forcing=forcing,
+            paths=tuple(description.paths), values=description.values,
             settings=prepare.settings_of(
                 self.initial, forcing, step_seconds=self.step_seconds, scheme=scheme,
-                first_period=self._first_period,
+                first_period=self._first_period, sequence=self.sequence,
             ),
-            readings=Readings.of(self.outputs),
-            start=first,
-            timezone=zone_name(climate.grid.zone),
-            inputs=inputs,
+            readings=Readings.of(self.outputs), inputs=inputs,
+            start=first, timezone=zone_name(climate.grid.zone),
         )  # fmt: skip
         _ = self.compiled.plan  # the engine's own checks
         self._require_possible(self.values[None, :])
@@ -394,7 +397,7 @@ class Simulation(VectorRuns):
         """Run once, and hand the records over in blocks of rows."""
         vector = np.array(vector, dtype=np.float64)
         self._require_possible(vector[None, :])
-        watch, count = Watch(self.building, self.outputs, self.scheme), len(self.outputs)
+        watch, count = Watch(self.building, self.outputs, self.scheme, self.sequence), len(self.outputs)
 
         def seen(rows: Array) -> None:
             watch.add(rows)
@@ -413,10 +416,9 @@ class Simulation(VectorRuns):
                 climate=summary(self.climate),
                 measurements=self.measured,
                 step_seconds=self.step_seconds,
+                steps=None if self.sequence is None else self.sequence.to_dict(),
                 scheme=self.scheme,
-                start=start_note(
-                    self.initial, self.compiled.settings, self.step_seconds, len(self.compiled.forcing), raw
-                ),
+                start=start_note(self.initial, self.compiled.settings, self.compiled.edges, raw),
                 changed={**self._replaced, **self._changed(vector)},
                 newton_iterations=int(raw["iterations"]),
                 nested_stages=int(raw["nested"]),
@@ -483,9 +485,7 @@ class Simulation(VectorRuns):
         """
         values = self.compiled.forcing[:, :, CHANNELS.index(channel)]
         # The start has no stage: the first one of the first step is used.
-        return np.concatenate([values[:1, 0], values[:, -1]])
-
-    # --- checks and provenance ----------------------------------------------------------------------------
+        return np.concatenate([values[:1, 0], values[self.compiled.record_ends, -1]])
 
     def _changed(self, vector: Array) -> dict[str, float]:
         """Parameters of a vector that differ from those of the building."""

@@ -13,5 +13,8 @@ Array: TypeAlias = npt.NDArray[np.floating[Any]]
 Flags: TypeAlias = npt.NDArray[np.bool_]
 """True or false."""
 
+Halvings: TypeAlias = npt.NDArray[np.uint8]
+"""How often an interval is halved for each step."""
+
 Lines: TypeAlias = npt.NDArray[np.int64]
 """Row or line numbers."""

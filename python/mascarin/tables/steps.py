@@ -10,7 +10,7 @@ import numpy as np
 
 from mascarin._io import memory
 from mascarin.errors import InputError, did_you_mean
-from mascarin.tables.arrays import Array
+from mascarin.tables.arrays import Array, Halvings
 from mascarin.tables.timezones import seconds_at
 
 #: Most steps of a run: a year in steps of 1.6 s. More are a mistake in the unit, and take hours.
@@ -32,7 +32,7 @@ STAGES: Final[dict[str, tuple[tuple[float, ...], tuple[float, ...]]]] = {
 
 @dataclass(frozen=True)
 class Steps:
-    """Steps of equal length over a period.
+    """Steps over a period, of equal length or parts of it.
 
     Times count from the start of the period, so that sums over a year keep their precision.
 
@@ -55,7 +55,15 @@ class Steps:
     weights: tuple[float, ...]
 
     @classmethod
-    def over(cls, zone: tzinfo, start: object, end: object, step_seconds: float, scheme: str) -> Steps:
+    def over(
+        cls,
+        zone: tzinfo,
+        start: object,
+        end: object,
+        step_seconds: float,
+        scheme: str,
+        halvings: Halvings | None = None,
+    ) -> Steps:
         """Steps from start to end.
 
         Parameters
@@ -68,11 +76,15 @@ class Steps:
             Step. [s]
         scheme : str
             A key of `STAGES`.
+        halvings : ndarray of uint8, shape (steps,), optional
+            How often the step is halved for each step that is taken. Default: never.
 
         Raises
         ------
         InputError
             The scheme is unknown, or the period is not a whole number of steps.
+        ValueError
+            Halved steps that do not fill the period.
         """
         if scheme not in STAGES:
             raise InputError(f"scheme: no scheme {scheme!r}. {did_you_mean(scheme, STAGES)}")
@@ -80,8 +92,14 @@ class Steps:
         first = seconds_at(start, zone, "start")
         last = seconds_at(end, zone, "end")
         count = _count(first, last, step_seconds, len(nodes))
-        edges = step_seconds * np.arange(count + 1)
-        return cls(first, last, edges, edges[:-1, None] + step_seconds * np.array(nodes), weights)
+        if halvings is None:
+            edges = step_seconds * np.arange(count + 1)
+            return cls(first, last, edges, edges[:-1, None] + step_seconds * np.array(nodes), weights)
+        lengths = step_seconds * np.exp2(-np.asarray(halvings, dtype=np.float64))
+        edges = np.concatenate([[0.0], np.cumsum(lengths)])
+        if abs(edges[-1] - step_seconds * count) > 1e-6:
+            raise ValueError(f"steps over {edges[-1]} s, expected {step_seconds * count} s")
+        return cls(first, last, edges, edges[:-1, None] + lengths[:, None] * np.array(nodes), weights)
 
 
 def _count(first: float, last: float, step: float, stages: int) -> int:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from mascarin._io.arguments import require_type
 from mascarin.errors import InputError
-from mascarin.tables.arrays import Array
+from mascarin.tables.arrays import Array, Halvings
 from mascarin.tables.quality import Stretch, find
 from mascarin.tables.quality.gaps import filled
 from mascarin.tables.reading.files import file_hash
@@ -487,6 +487,7 @@ class Climate(RecordView[WeatherRecord]):
         measurements: Measurements | None = None,
         limits: Mapping[str, tuple[float, float]] | None = None,
         further: int = 0,
+        halvings: Halvings | None = None,
     ) -> Array:
         """What the engine takes as input: channels at the stages of every step of a period.
 
@@ -509,6 +510,8 @@ class Climate(RecordView[WeatherRecord]):
             `IRRADIANCES` or `COEFFICIENTS`. [unit of the column]
         further : int
             Channels at the end that the caller fills.
+        halvings : ndarray of uint8, shape (steps,), optional
+            How often the step is halved for each step that is taken. Default: never.
 
         Returns
         -------
@@ -522,7 +525,7 @@ class Climate(RecordView[WeatherRecord]):
             impossible, or a column is unknown.
         """
         require_place(self.record, site)
-        steps = Steps.over(self.grid.zone, start, end, step_seconds, scheme)
+        steps = Steps.over(self.grid.zone, start, end, step_seconds, scheme, halvings)
         require_period(self.record, steps)
         measured = None if measurements is None else measurements.record
         complete = self.completed(site).record

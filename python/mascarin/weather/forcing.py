@@ -117,7 +117,15 @@ def forcing(
 def _fill_at_place(out: Array, completed: WeatherRecord, site: SiteLike, steps: Steps) -> None:
     """Weather and sun without measured columns; the last one is kept, for other buildings at the place."""
     latitude, longitude = float(site.latitude), float(site.longitude)
-    key = (latitude, longitude, steps.first, steps.last, len(steps.stage), steps.weights)
+    key = (
+        latitude,
+        longitude,
+        steps.first,
+        steps.last,
+        len(steps.stage),
+        steps.weights,
+        steps.edges.tobytes(),
+    )
     if _LAST and _LAST[0].record is completed and _LAST[0].key == key:
         out[...] = _LAST[0].values
         return

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, cast
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.tables.arrays import Array
+from mascarin.tables.arrays import Array, Halvings
 from mascarin.tables.checks import require_range
 from mascarin.tables.record import Origin
 from mascarin.tables.steps import Steps
@@ -73,6 +73,7 @@ def scheduled(
     step_seconds: float,
     scheme: str = "sdirk2",
     measurements: Measurements | None = None,
+    halvings: Halvings | None = None,
 ) -> Array:
     """Values of schedules at the stages of every step of a period.
 
@@ -96,6 +97,8 @@ def scheduled(
         A key of `STAGES`.
     measurements : Measurements, optional
         Where to look for columns that the climate does not hold.
+    halvings : ndarray of uint8, shape (steps,), optional
+        How often the step is halved for each step that is taken. Default: never.
 
     Returns
     -------
@@ -123,7 +126,7 @@ def scheduled(
     >>> scheduled(climate, {"night": night}, UTC, index[0], index[2], 3600.0, "backward-euler").ravel()
     array([18., 18.])
     """
-    steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme)
+    steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme, halvings)
     out = np.empty((*steps.stage.shape, len(schedules)))
 
     def values_of(name: str) -> Array:

@@ -10,7 +10,7 @@ use crate::input::forcing::Forcing;
 use crate::number::dual::Dual;
 use crate::number::real::Real;
 use crate::run::options::Options;
-use crate::run::outputs::Output;
+use crate::run::records::RecordRow;
 use crate::run::simulate::simulate_observed;
 use crate::step::Stepper;
 use crate::step::control::RunControl;
@@ -106,6 +106,7 @@ struct Group<'a> {
 /// What a group has recorded.
 struct Slopes {
     parameters: usize,
+    row: RecordRow<Sloped>,
     records: Vec<Sloped>,
 }
 
@@ -131,12 +132,13 @@ fn run_with_slopes(
     let mut groups: Vec<_> = vectors
         .iter()
         .map(|(numbers, parameters)| {
-            let mut stepper = DerivativeStepper::new(plan, numbers, options.scheme.converged());
-            if options.outputs.iter().any(Output::averages_absorbed_sun) {
-                stepper.linearized_stepper.average_absorbed_sun();
-            }
+            let stepper = DerivativeStepper::of_run(plan, numbers, options);
             let state = stepper.linearized_stepper.begin(&options.initial, weather.row(0, 0));
-            Group { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
+            Group {
+                state,
+                stepper,
+                slopes: Slopes { parameters: *parameters, row: RecordRow::new(), records: Vec::new() },
+            }
         })
         .collect();
     let mut plain = Stepper::new(plan, numbers, options.scheme.converged());
@@ -155,13 +157,11 @@ fn run_with_slopes(
             }
         }
         for Group { stepper, state, slopes } in &mut groups {
-            stepper.take(action, state, weather, options.dt, &plain.known);
+            stepper.take(action, state, weather, options.length(action.step()), &plain.known);
             // The values are those of the plain run, as in reverse: rounding and tolerances must not add up.
             state.change_by(reached, |number, value| number.value = value);
-            if action.row(options).is_some() {
-                let step = stepper.linearized_stepper.readings();
-                slopes.records.extend(options.outputs.iter().map(|output| output.read(plan, &step, state)));
-            }
+            let read = (&stepper.linearized_stepper.readings(), &*state);
+            slopes.row.add((action, options, &options.outputs), read, &mut slopes.records);
         }
         Ok(())
     })?;

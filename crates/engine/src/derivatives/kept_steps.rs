@@ -108,7 +108,8 @@ fn run_again(run: KeptRun<'_, '_>, start: &Start, actions: &[Action]) -> Result<
     let mut stretch = Stretch::default();
     for action in actions {
         before.copy_from(&state);
-        action.take(&mut stepper, &mut state, run.weather, run.options.dt, &mut unused)?;
+        let length = run.options.length(action.step());
+        action.take(&mut stepper, &mut state, run.weather, length, &mut unused)?;
         stretch.push(&before, &stepper);
     }
     Ok(stretch)

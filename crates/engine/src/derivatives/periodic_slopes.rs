@@ -94,7 +94,8 @@ pub(super) fn settle<const K: usize>(
                 state.read(before, |number, value| number.value = value);
                 let cells = &stepper.linearized_stepper.model.parts.nonlinear_cells;
                 known.read(cells, solution, stages, (&unknowns, end));
-                stepper.take(action, state, run.weather, run.options.dt, &known);
+                let length = run.options.length(action.step());
+                stepper.take(action, state, run.weather, length, &known);
             }
             Ok(())
         })?;

@@ -11,10 +11,9 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::linear::unknowns::Unknowns;
 use crate::number::tape::{Tape, Taped};
-use crate::run::Action;
 use crate::run::options::Options;
-use crate::run::outputs::Output;
 use crate::run::simulate::{Run, simulate_observed};
+use crate::run::{Action, Recorded};
 use crate::step::Stepper;
 use crate::step::control::RunControl;
 use crate::step::halving::Part;
@@ -140,10 +139,7 @@ impl<'a> ReversePass<'a> {
         options: &'a Options,
         (reached, records): (&State<f64>, &'a [f64]),
     ) -> Self {
-        let mut stepper = DerivativeStepper::new(plan, leaves, options.scheme.converged());
-        if options.outputs.iter().any(Output::averages_absorbed_sun) {
-            stepper.linearized_stepper.average_absorbed_sun();
-        }
+        let stepper = DerivativeStepper::of_run(plan, leaves, options);
         let length = Tape::len();
         let now = stepper.linearized_stepper.begin(&options.initial, weather.row(0, 0));
         Tape::truncate(length);
@@ -217,16 +213,21 @@ impl<'a> ReversePass<'a> {
         let cells = &stepper.linearized_stepper.model.parts.nonlinear_cells;
         let stages = if action == Action::Balance { 1 } else { self.options.scheme.weights().len() };
         self.known.read(cells, solution, stages, (&self.blank.0, &self.blank.1));
-        stepper.take(action, state, self.weather, self.options.dt, &self.known);
+        let length = self.options.length(action.step());
+        stepper.take(action, state, self.weather, length, &self.known);
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
         state.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));
-        if let Some(row) = action.row(self.options) {
+        if let Some(Recorded { row, share, ends }) = action.record(self.options) {
             let (outputs, step) = (&self.options.outputs, stepper.linearized_stepper.readings());
             for (output, weight) in outputs.iter().zip(&self.records[row * outputs.len()..]) {
+                if !(ends || output.is_mean()) {
+                    continue;
+                }
                 let record = output.read(step.model.plan, &step, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
-                record.add_weight(*weight, &mut self.weights);
+                let share = if output.is_mean() { share } else { 1.0 };
+                record.add_weight(*weight * share, &mut self.weights);
             }
         }
         Tape::propagate(&mut self.weights, self.base, |stage, equations, weights| {

@@ -11,6 +11,8 @@ use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Equations, Real};
 use crate::number::tape::{Taped, add_steady_weights};
 use crate::run::Action;
+use crate::run::options::Options;
+use crate::run::outputs::Output;
 use crate::step::Scheme;
 use crate::step::linearized_stepper::{StagePlace, TangentStepper};
 use crate::step::stage_solutions::{KnownPart, StageSolutions};
@@ -61,6 +63,20 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
             scratch: Vec::new(),
             linearized_stepper,
         }
+    }
+
+    /// For a run: with the means that its outputs need, and with the factors of walls of several stage lengths where its steps differ.
+    pub(super) fn of_run(plan: &'a Plan, numbers: &'a [S], options: &Options) -> Self {
+        let mut stepper = Self::new(plan, numbers, options.scheme.converged());
+        if options.lengths.is_some() {
+            for stage in &mut stepper.stages {
+                stage.matrix.keep_factors();
+            }
+        }
+        if options.outputs.iter().any(Output::averages_absorbed_sun) {
+            stepper.linearized_stepper.average_absorbed_sun();
+        }
+        stepper
     }
 
     /// Takes an action whose solution is known.

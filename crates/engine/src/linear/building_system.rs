@@ -15,6 +15,7 @@ use crate::linear::thick_walls::ThickWalls;
 use crate::linear::transition_matrices::TransitionMatrices;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::{Response, WallSystem};
+use crate::linear::wall_factors::{FactorStore, InUse};
 use crate::linear::zone_elimination::{Elimination, ZoneFronts};
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
@@ -33,6 +34,8 @@ pub(crate) struct BuildingSystem<'a, S> {
     pub(crate) sources: Vec<[S; 2]>,
     /// Effective stage length that walls are factored for [s]; NaN: none.
     pub(crate) factored_length: f64,
+    /// Of other stage lengths.
+    pub(crate) factors: FactorStore<S>,
     /// Surfaces outside the zones, as functions of those inside.
     pub(crate) exterior: Vec<ExteriorSurfaces<S>>,
     /// Rise of the exterior surface of each wall with heat, its other surface held [m2 K/W].
@@ -66,6 +69,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             responses: vec![Response::none(); count],
             sources: vec![[S::zero(); 2]; count],
             factored_length: f64::NAN,
+            factors: FactorStore::new(),
             exterior: vec![ExteriorSurfaces::None; count],
             inverses: vec![S::zero(); count],
             coupled: CoupledSystem::new(&plan.pattern, plan.own_rows, plan.constant_rows),
@@ -81,13 +85,21 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
     pub(crate) fn factor_linear_walls(&mut self, model: &Model<'_, S>, length: f64) -> bool {
         let new = self.factored_length.to_bits() != length.to_bits();
         if new {
-            for &w in &model.parts.linear_walls {
-                self.responses[w] = self.walls[w].factor(&model.coefficients.walls[w], length);
+            let current = InUse {
+                walls: &mut self.walls,
+                transition_matrices: &mut self.transition_matrices,
+                responses: &mut self.responses,
+                length: &mut self.factored_length,
+            };
+            if !self.factors.exchange(length, current) {
+                for &w in &model.parts.linear_walls {
+                    self.responses[w] = self.walls[w].factor(&model.coefficients.walls[w], length);
+                }
+                for &w in &model.parts.nonlinear_walls {
+                    self.walls[w].set_stage_length(&model.coefficients.walls[w], length);
+                }
+                self.transition_matrices.factor(&self.walls);
             }
-            for &w in &model.parts.nonlinear_walls {
-                self.walls[w].set_stage_length(&model.coefficients.walls[w], length);
-            }
-            self.transition_matrices.factor(&self.walls);
             self.zone_fronts.set_responses(&self.responses);
             self.thick_walls.set_responses(&self.responses);
             self.factored_length = length;

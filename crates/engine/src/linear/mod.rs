@@ -25,6 +25,7 @@ pub(crate) mod tridiagonal;
 pub(crate) mod unknowns;
 pub(crate) mod vent_network;
 pub(crate) mod wall;
+pub(crate) mod wall_factors;
 pub(crate) mod wall_linearisation;
 pub(crate) mod zone_elimination;
 

@@ -49,6 +49,11 @@ impl<'a> StageMatrix<'a> {
         }
     }
 
+    /// Keeps the factors of several stage lengths.
+    pub(crate) fn keep_factors(&mut self) {
+        self.system.factors.keep();
+    }
+
     /// Factors the linear walls for a stage length [s]. True where that was not done before.
     #[inline(always)]
     pub(crate) fn factor_linear_walls(&mut self, length: f64) -> bool {

@@ -25,7 +25,7 @@ pub(crate) enum Action {
 }
 
 impl Action {
-    /// Carries the action out.
+    /// Carries the action out; `dt` is the length of its step [s].
     #[inline(always)]
     pub(crate) fn take<S: Real>(
         self,
@@ -72,23 +72,46 @@ impl Action {
         [0, last].map(|stage| weather.row(self.step(), stage))
     }
 
-    /// Row of the records that the state after it is written to.
-    pub(crate) fn row(self, options: &Options) -> Option<usize> {
-        // Row k is the state at the start of step `record_from + k * record_every`.
+    /// What it adds to the records.
+    #[inline(always)]
+    pub(crate) fn record(self, options: &Options) -> Option<Recorded> {
         let steps = match self {
             Self::BeginPeriod | Self::WarmUp(_) => return None,
             Self::Balance => 0,
             Self::FirstStep => 1,
             Self::Step(step) => step + 1,
         };
-        let since = steps.checked_sub(options.record_from)?;
-        since.is_multiple_of(options.record_every).then(|| since / options.record_every)
+        // Row k is the state at the start of step, or record interval, `record_from + k * record_every`.
+        let (ended, share, ends) = match &options.lengths {
+            Some(lengths) if steps > 0 => {
+                let ends = lengths.ends_interval(steps);
+                let ended = lengths.intervals(steps) + usize::from(!ends);
+                (ended, lengths.share(steps - 1), ends)
+            }
+            _ => (steps, 1.0, true),
+        };
+        let since = ended.checked_sub(options.record_from)?;
+        let row = since.is_multiple_of(options.record_every).then(|| since / options.record_every)?;
+        Some(Recorded { row, share, ends })
     }
+}
+
+/// What an action adds to the records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Recorded {
+    pub(crate) row: usize,
+    /// Part of the means of the row that its step is.
+    pub(crate) share: f64,
+    /// Whether the row ends with it.
+    pub(crate) ends: bool,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+
+    use crate::run::step_lengths::StepLengths;
     use crate::step::state::Initial;
 
     /// The rows of the actions of a run are those that its options count, without gap.
@@ -99,6 +122,7 @@ mod tests {
         {
             let options = Options {
                 dt: 900.0,
+                lengths: None,
                 scheme: Scheme::BackwardEuler,
                 initial: Initial::Everywhere(20.0),
                 warmup: None,
@@ -108,13 +132,37 @@ mod tests {
                 residuals: false,
             };
             let actions = Action::all(steps, &options);
-            let rows: Vec<usize> = actions.filter_map(|action| action.row(&options)).collect();
+            let rows: Vec<usize> =
+                actions.filter_map(|action| action.record(&options)).map(|record| record.row).collect();
             assert_eq!(
                 rows,
                 (0..options.rows(steps)).collect::<Vec<_>>(),
                 "{steps}, {record_from}, {record_every}"
             );
-            assert_eq!(Action::WarmUp(record_from).row(&options), None);
+            assert_eq!(Action::WarmUp(record_from).record(&options), None);
         }
+    }
+
+    /// Steps of an interval share its row, each by its length.
+    #[test]
+    fn steps_of_an_interval_share_a_row() {
+        let lengths = StepLengths::new(vec![1, 2, 2, 0]).unwrap();
+        let options = Options {
+            dt: 900.0,
+            lengths: Some(Arc::new(lengths)),
+            scheme: Scheme::BackwardEuler,
+            initial: Initial::Everywhere(20.0),
+            warmup: None,
+            outputs: Vec::new(),
+            record_from: 0,
+            record_every: 1,
+            residuals: false,
+        };
+        assert_eq!(options.rows(4), 3);
+        let records: Vec<_> =
+            Action::all(4, &options).map(|action| action.record(&options).unwrap()).collect();
+        let shares: Vec<_> = records.iter().map(|record| (record.row, record.share, record.ends)).collect();
+        let expected = [(0, 1.0, true), (1, 0.5, false), (1, 0.25, false), (1, 0.25, true), (2, 1.0, true)];
+        assert_eq!(shares, expected);
     }
 }

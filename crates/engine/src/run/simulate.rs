@@ -10,6 +10,7 @@ use crate::run::options::Options;
 use crate::run::output_limits::{beyond_limits, require_limits};
 use crate::run::outputs::Output;
 use crate::run::physical_limits::{Outlier, PhysicalLimits};
+use crate::run::records::RecordRow;
 use crate::run::validity::{OutOfRange, Validity};
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
@@ -78,6 +79,9 @@ pub(crate) fn simulate_in<S: Real>(
 
 /// Lets a stepper find what the options ask for beside the results of every run.
 pub(super) fn prepare<S: Real>(stepper: &mut Stepper<'_, S>, options: &Options) {
+    if options.lengths.is_some() {
+        stepper.keep_factors();
+    }
     if options.residuals {
         stepper.evaluate_residuals();
     }
@@ -94,28 +98,28 @@ pub(crate) fn simulate_observed<'a, S: Real>(
     control: &'a RunControl,
     mut observe: impl FnMut(&Stepper<'a, S>, &State<S>, Action) -> Result<(), EngineError>,
 ) -> Result<Run<S>, EngineError> {
-    let plan = stepper.model.plan;
     stepper.set_control(control);
     prepare(&mut stepper, options);
     let mut state = stepper.begin(&options.initial, weather.row(0, 0));
     let (cycles, warm_up_change) =
         warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.outputs.len());
+    let mut row = RecordRow::new();
     let mut energy_balance = EnergyBalance::new();
     let mut limits = PhysicalLimits::new(&state, options.scheme);
     let mut validity = Validity::new(&stepper.model);
     for action in Action::all(weather.steps(), options) {
         control.check()?;
-        action.take(&mut stepper, &mut state, weather, options.dt, &mut energy_balance)?;
+        let length = options.length(action.step());
+        action.take(&mut stepper, &mut state, weather, length, &mut energy_balance)?;
         control.count_step();
         let rows = action.weather_rows(weather, options.scheme);
         limits.judge(&mut stepper, &state, rows, (action, action.step()))?;
         if action != Action::Balance {
             validity.judge(&stepper, &state, action.step());
         }
-        if action.row(options).is_some() {
-            let step = stepper.readings();
-            records.extend(options.outputs.iter().map(|output| output.read(plan, &step, &state)));
+        let of_row = (action, options, &options.outputs[..]);
+        if row.add(of_row, (&stepper.readings(), &state), &mut records) {
             judge_records(&mut stepper, &options.outputs, &records, action.step())?;
         }
         observe(&stepper, &state, action)?;

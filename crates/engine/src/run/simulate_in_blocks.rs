@@ -6,6 +6,7 @@ use crate::input::forcing::Forcing;
 use crate::run::options::Options;
 use crate::run::output_limits::require_limits;
 use crate::run::outputs::Output;
+use crate::run::records::RecordRow;
 use crate::run::simulate::{Run, simulate_observed};
 use crate::step::control::RunControl;
 use crate::step::stepper::Stepper;
@@ -36,14 +37,12 @@ pub fn simulate_in_blocks(
     let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);
     let weather = Weather::for_single_run(plan, forcing, repeated);
     let rows = rows.clamp(1, options.rows(forcing.steps()).max(1));
-    let (mut block, mut filled) = (Vec::new(), 0);
+    let (mut block, mut filled, mut row) = (Vec::new(), 0, RecordRow::new());
     let run = simulate_observed(stepper, &weather, &bare, control, |stepper, state, action| {
-        if action.row(options).is_none() {
+        block.reserve(if filled == 0 { rows * outputs.len() } else { 0 });
+        if !row.add((action, options, outputs), (&stepper.readings(), state), &mut block) {
             return Ok(());
         }
-        block.reserve(if filled == 0 { rows * outputs.len() } else { 0 });
-        let step = stepper.readings();
-        block.extend(outputs.iter().map(|output| output.read(plan, &step, state)));
         require_limits(plan, outputs, &block[block.len() - outputs.len()..], action.step())?;
         filled += 1;
         if filled < rows {

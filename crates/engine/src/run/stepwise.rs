@@ -52,6 +52,9 @@ impl<'a> StepByStep<'a> {
     ) -> Result<Self, EngineError> {
         options.check(plan, parameters.len(), first_period)?;
         options.check_forcing(plan, first_step)?;
+        if options.lengths.is_some() {
+            return Err(EngineError::Input("a run step by step has steps of one length".to_owned()));
+        }
         let mut stepper = Stepper::new(plan, parameters, options.scheme);
         prepare(&mut stepper, options);
         let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);

@@ -101,7 +101,7 @@ pub(super) fn warm_up<'a, S: Real>(
 ) -> Result<(usize, S), EngineError> {
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
     let tolerance = warmup.tolerance.max(LEAST.of::<S>());
-    let period = warmup.steps as f64 * options.dt;
+    let period = options.elapsed(warmup.steps);
     let (soil, soil_start) = (slow_soil(stepper.model.plan, period), SoilStart::new(&stepper.model, period));
     let mut progress = Progress::new(state, tolerance);
     let mut known: Option<PeriodicStart<S>> = None;
@@ -114,7 +114,7 @@ pub(super) fn warm_up<'a, S: Real>(
         observe(stepper, state, Action::BeginPeriod)?;
         for action in (0..warmup.steps).map(Action::WarmUp) {
             control.check()?;
-            action.take(stepper, &mut next, weather, options.dt, &mut unused)?;
+            action.take(stepper, &mut next, weather, options.length(action.step()), &mut unused)?;
             observe(stepper, &next, action)?;
         }
         let change = largest_change(state, &next, if cycle <= SETTLING { &soil } else { &[] });

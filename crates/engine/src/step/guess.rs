@@ -9,16 +9,21 @@ use crate::number::real::Real;
 use crate::physics::pcm::PcmHistory;
 use crate::step::state::State;
 
+/// A step that is longer than the one before is guessed as one of so many times its length at most.
+const LONGER: f64 = 2.0;
+
 /// What initial guesses are made from beside the state: the start of the step before.
 #[derive(Debug, Clone)]
 pub(crate) struct Guess<S> {
     previous: Option<Unknowns<S>>,
+    /// Length of that step [s]; zero: that of the next one.
+    length: f64,
 }
 
 impl<S: Real> Guess<S> {
     /// Nothing went before.
     pub(crate) fn none() -> Self {
-        Self { previous: None }
+        Self { previous: None, length: 0.0 }
     }
 
     /// What comes next does not continue the step before.
@@ -34,7 +39,8 @@ impl<S: Real> Guess<S> {
 
     /// Keeps the start of this step for the guess of the next.
     #[inline(always)]
-    pub(crate) fn remember(&mut self, model: &Model<'_, S>, state: &State<S>) {
+    pub(crate) fn remember(&mut self, model: &Model<'_, S>, state: &State<S>, length: f64) {
+        self.length = length;
         let plan = model.plan;
         let zero = || Unknowns::zero(plan.n_cells, plan.surfaces.len(), plan.zones.len());
         self.previous.get_or_insert_with(zero).copy_some(&model.parts.nonlinear_cells, &state.view());
@@ -63,13 +69,26 @@ impl<S: Real> Guess<S> {
         }
     }
 
-    /// Guesses a stage at a node: the straight line through the start of the step before and that of this one, or the start
-    /// itself.
+    /// Guesses a stage at a node of a step of a length [s]: the straight line through the start of the step before and that of this one,
+    /// or the start itself.
     #[inline(always)]
-    pub(crate) fn first(&self, model: &Model<'_, S>, state: &State<S>, node: f64, iterate: &mut Unknowns<S>) {
+    pub(crate) fn first(
+        &self,
+        model: &Model<'_, S>,
+        state: &State<S>,
+        (node, length): (f64, f64),
+        iterate: &mut Unknowns<S>,
+    ) {
+        // The same bits as without the ratio where lengths are equal.
+        let ratio = if self.length > 0.0 { (length / self.length).min(LONGER) } else { 1.0 };
         match &self.previous {
             Some(previous) if node > 0.0 => {
-                iterate.extrapolate(model, &[previous.view(), state.view()], 1.0 + node, &state.memory);
+                iterate.extrapolate(
+                    model,
+                    &[previous.view(), state.view()],
+                    1.0 + node * ratio,
+                    &state.memory,
+                );
             }
             _ => iterate.copy_some(&model.parts.nonlinear_cells, &state.view()),
         }
@@ -88,6 +107,7 @@ impl Guess<f64> {
     /// Reads the numbers of another one for the same plan, and gives those after them; none where these are no such numbers.
     pub(crate) fn read<'n>(&mut self, plan: &Plan, numbers: &'n [f64]) -> Option<&'n [f64]> {
         let (&some, rest) = numbers.split_first()?;
+        self.length = 0.0;
         if some == 0.0 {
             self.previous = None;
             return Some(rest);

@@ -81,6 +81,12 @@ impl<S: Real> Substeps<S> {
         self.left.push(Part::whole(step));
     }
 
+    /// Begins with a part of a step.
+    pub(crate) fn begin_part(&mut self, part: Part) {
+        self.load.fill(S::zero());
+        self.left.push(part);
+    }
+
     /// Begins with the first step of a run, in parts that grow.
     #[cold]
     pub(crate) fn begin_first(&mut self) {

@@ -80,6 +80,11 @@ impl<'a, S: Real> Stepper<'a, S> {
         State::new(&self.model, initial, row)
     }
 
+    /// Keeps the factors of walls of several stage lengths: for steps of unequal length.
+    pub(crate) fn keep_factors(&mut self) {
+        self.solver.system.factors.keep();
+    }
+
     /// Lets the caller stop it, also within a step.
     pub(crate) fn set_control(&mut self, control: &'a RunControl) {
         self.solver.control = Some(control);
@@ -171,6 +176,27 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.take_parts(state, weather, dt, energy_balance)
     }
 
+    /// A part of a step of length `dt` [s] alone, in the weather of the step. Its loads are means over the part.
+    ///
+    /// # Errors
+    /// [`EngineError::NotConverged`].
+    pub(crate) fn part_of_step(
+        &mut self,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        part: Part,
+        dt: f64,
+        energy_balance: &mut EnergyBalance<S>,
+    ) -> Result<(), EngineError> {
+        self.parts.begin_part(part);
+        self.control_vents(state, weather.row(part.step, 0), part.share * dt);
+        self.take_parts(state, weather, dt, energy_balance)?;
+        for load in &mut state.load {
+            *load = load.scale(1.0 / part.share);
+        }
+        Ok(())
+    }
+
     // One copy only: inlining multiplies compile time.
     #[inline(never)]
     fn take_parts(
@@ -248,7 +274,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         if with_loads {
             self.guess_loads(state, weather.row(part.step, tableau.weights.len() - 1), length);
         }
-        self.guess.remember(&self.model, state);
+        self.guess.remember(&self.model, state, length);
         let energy = if with_loads {
             self.step_with_loads(state, weather, part, length)?
         } else {
@@ -298,7 +324,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         solver.start.holding.clear();
         solver.system.transition_matrices.begin();
         self.known.restart();
-        self.guess.first(model, state, node, &mut solver.iterate);
+        self.guess.first(model, state, (node, length), &mut solver.iterate);
         solver.linearisation.extrapolate_gaps(0, &state.cells);
     }
 

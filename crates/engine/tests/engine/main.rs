@@ -32,6 +32,7 @@ mod properties;
 mod rooms_side_by_side;
 mod single_precision;
 mod slopes_of_stages;
+mod step_lengths;
 mod stepwise;
 mod streamed;
 mod supercooling;

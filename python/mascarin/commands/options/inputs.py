@@ -34,6 +34,13 @@ Outside = Annotated[
     ),
 ]
 Step = Annotated[str, Parameter(help="Time step, such as 900, 15min or 1h.")]
+RunStep = Annotated[
+    str,
+    Parameter(
+        help="Time step, such as 900, 15min or 1h; or 'auto 0.05K every 1h': steps that follow the weather, "
+        "with a tolerance and the interval of the records."
+    ),
+]
 
 
 Weather = Annotated[
@@ -155,6 +162,29 @@ def seconds(text: str) -> float:
     from mascarin._io.durations import seconds_of
 
     return seconds_of(text, "--step")
+
+
+def step_of(text: str) -> str | float:
+    """Step of a run: a length, or `auto`.
+
+    Parameters
+    ----------
+    text : str
+        As of `seconds`, or such as ``auto 0.05K every 1h``.
+
+    Returns
+    -------
+    float or str
+        The step [s], or the text that steps are chosen by.
+
+    Raises
+    ------
+    InputError
+        The text is neither.
+    """
+    from mascarin._io.durations import auto_step
+
+    return seconds(text) if auto_step(text, "--step") is None else text
 
 
 def matching_outputs(building: Building, patterns: Sequence[str] | None) -> list[str] | None:

@@ -10,7 +10,7 @@ from pydantic import Field, StringConstraints, model_validator
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part, fault, insist
 from mascarin.design.evaluation.objectives import AnyObjective
-from mascarin.measurements.time_fields import Duration, Shift, Time
+from mascarin.measurements.time_fields import RunStep, Shift, Time
 
 if TYPE_CHECKING:
     from typing import Self
@@ -142,7 +142,10 @@ class DesignFile(Part):
     building: str = Field(description="Building file, its path starting at the folder of this file")
     climates: dict[Name, ClimateFile] = Field(min_length=1, description="Name -> weather file and period")
     period: Period | None = Field(None, description="Period of all climates; by default the whole files")
-    step: Duration = Field("15min", description="Time step")
+    step: RunStep = Field(
+        "15min",
+        description="Time step, or `auto 0.05K every 1h`: steps that are chosen, with a tolerance",
+    )
     scheme: Literal["sdirk2", "linearly-implicit", "backward-euler"] = Field(
         "sdirk2", description="Time-stepping scheme"
     )

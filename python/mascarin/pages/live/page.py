@@ -30,6 +30,7 @@ from mascarin.pages.run.page import Notes, flow_words, how_it_was_run
 from mascarin.simulation.checks import step_check, unmelted
 from mascarin.simulation.checks.energy import CLOSED, FLOWS
 from mascarin.simulation.checks.warning_kinds import WarningKind
+from mascarin.simulation.preparation.step_sequence import require_equal_steps
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import CHANNELS
 
@@ -150,6 +151,7 @@ def _compiled(
     recorded = list(dict.fromkeys([*curves, *operative]))
     first = Simulation(building, climate, **options, outputs=recorded)
     parameters = sliders.chosen(building, first, patterns)
+    require_equal_steps(first.sequence, "a page in which the model runs: its engine has no others")
     ranges = {each.path: (each.low, each.high) for each in parameters if each.low < each.high}
     return Simulation(building, climate, **options, outputs=recorded, ranges=ranges), parameters
 

@@ -16,6 +16,7 @@ from mascarin.figures.svg.chart import Axis, Chart
 from mascarin.pages.frame.template import environment, frame
 from mascarin.pages.study.data.series import Array
 from mascarin.pages.study.sections.energy import ledger_bars
+from mascarin.simulation.records.provenance import words_of
 from mascarin.study_document.comparison import LedgerEntry, LedgerTerm
 
 if TYPE_CHECKING:
@@ -360,6 +361,7 @@ def how_it_was_run(results: Results, notes: Notes) -> list[tuple[str, str]]:
         ("Period", f"{results.index[0]:%Y-%m-%d %H:%M} to {results.index[-1]:%Y-%m-%d %H:%M}"),
         ("Time zone", str(results.index.tz)),
         ("Step", text.with_unit(provenance.step_seconds, "s", 6)),
+        *([] if provenance.steps is None else [("Steps", words_of(provenance.steps))]),
         ("Scheme", provenance.scheme),
         ("Start", provenance.start),
         *((path, text.significant(value, 6)) for path, value in provenance.changed.items()),

@@ -9,10 +9,11 @@ import numpy as np
 
 from mascarin.building.checks.air import BALANCED, REMEDY, flows_of_zones, imbalance
 from mascarin.errors import InputError
+from mascarin.tables.times import local_time
 from mascarin.weather.records.channels import CHANNELS
 
 if TYPE_CHECKING:
-    from datetime import datetime
+    from datetime import tzinfo
 
     import numpy.typing as npt
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def require_balanced_flows(
-    building: Building, forcing: Array, channels: Sequence[str], period: tuple[datetime, float]
+    building: Building, forcing: Array, channels: Sequence[str], begins: Array, clock: tzinfo
 ) -> None:
     """Refuse flows that do not balance in a zone without make-up air.
 
@@ -35,8 +36,10 @@ def require_balanced_flows(
         What acts on the building, schedules and columns included. [unit of each]
     channels : sequence of str
         Channels of the forcing after those of the climate.
-    period : tuple of (datetime, float)
-        Start of the run, and its step [s].
+    begins : ndarray, shape (steps or more,)
+        Starts of the steps, in seconds since 1970-01-01 UTC. [s]
+    clock : datetime.tzinfo
+        Zone of the local clock, for the message.
 
     Raises
     ------
@@ -61,9 +64,7 @@ def require_balanced_flows(
         worst = int(np.argmax(np.abs(enters - leaves) - BALANCED * np.maximum(enters, leaves)))
         wrong = imbalance({path: float(flow[worst]) for path, flow in flows.items()}, air)
         if wrong is not None:
-            import pandas as pd
-
-            when = pd.Timestamp(period[0]) + pd.Timedelta(seconds=worst * period[1])
+            when = local_time(float(begins[worst]), clock)
             raise InputError(
                 f"zones.{zone}: found that {wrong} in the step from {when:%Y-%m-%d %H:%M}; expected as much "
                 f"air in as out. {REMEDY}"

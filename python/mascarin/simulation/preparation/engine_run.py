@@ -93,7 +93,25 @@ class CompiledRun:
         return plan_of(self.description)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {key: value for key, value in self.__dict__.items() if key != "plan"}
+        return {key: value for key, value in self.__dict__.items() if key not in ("plan", "edges")}
+
+    @cached_property
+    def edges(self) -> Array:
+        """Ends of the steps, from the start, shape (steps + 1,). [s]"""
+        halvings = np.array(self.settings.get("halvings", [0] * len(self.forcing)), dtype=np.float64)
+        return np.concatenate([[0.0], np.cumsum(self.settings["dt"] * np.exp2(-halvings))])
+
+    @property
+    def record_ends(self) -> npt.NDArray[np.int64]:
+        """The last step of each record interval."""
+        ends = self.settings["dt"] * np.arange(1, self.intervals + 1)
+        # In the middle between steps, so that rounding does not matter.
+        return np.asarray(np.searchsorted(self.edges[1:] + 1e-9 * self.settings["dt"], ends), dtype=np.int64)
+
+    @property
+    def intervals(self) -> int:
+        """Record intervals: steps, where these are of one length."""
+        return round(float(self.edges[-1] / self.settings["dt"]))
 
     @cached_property
     def hash(self) -> str:
@@ -114,7 +132,7 @@ class CompiledRun:
         readings : Readings, optional
             Outputs other than those of the compiled run.
         record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
+            First recorded row and spacing of the recorded rows, in steps, or record intervals.
         """
         return {
             **self.settings,
@@ -218,7 +236,7 @@ class CompiledRun:
         vectors : ndarray, shape (M, P)
             One parameter vector a row. [unit of each]
         record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
+            First recorded row and spacing of the recorded rows, in steps, or record intervals.
         precision : str
             ``double`` or ``single``; in single precision, members whose energy balance does not close within
             1e-4 are run again in double precision.
@@ -298,7 +316,7 @@ class CompiledRun:
         vector : ndarray, shape (P,)
             Parameter vector. [unit of each]
         record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
+            First recorded row and spacing of the recorded rows, in steps, or record intervals.
         progress : callable, optional
             Called with the number of parameters done and their total.
 
@@ -367,7 +385,7 @@ class CompiledRun:
         vector : ndarray, shape (P,)
             Parameter vector. [unit of each]
         record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
+            First recorded row and spacing of the recorded rows, in steps, or record intervals.
         memory : int
             About how much may be kept: beyond it parts of the run are calculated again. [B]
 
@@ -396,7 +414,7 @@ class CompiledRun:
         return Trajectory(run, run.run()["records"], self.readings, further)
 
     def _rows(self, record_from: int, record_every: int) -> int:
-        return max(len(self.forcing) - record_from, 0) // max(record_every, 1) + 1
+        return max(self.intervals - record_from, 0) // max(record_every, 1) + 1
 
     def _require_room(self, times: int, rows: int, what: str, advice: str, more: float = 0.0) -> None:
         """Refuse results that memory does not hold, with `more` bytes; the engine would end the process."""
@@ -419,9 +437,7 @@ class CompiledRun:
 
         def stamped(match: re.Match[str]) -> str:
             step = min(int(match[1]), len(self.forcing) - 1)
-            begin = datetime.fromtimestamp(0, UTC) + timedelta(
-                seconds=self.start + step * self.settings["dt"]
-            )
+            begin = datetime.fromtimestamp(0, UTC) + timedelta(seconds=self.start + float(self.edges[step]))
             local = begin.astimezone(parse_timezone(self.timezone))
             return f"step {step} from {local:%Y-%m-%d %H:%M:%S}"
 

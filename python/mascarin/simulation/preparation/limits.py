@@ -10,6 +10,7 @@ import numpy as np
 
 from mascarin.building.parts.materials.material import PhaseChangeMaterial
 from mascarin.errors import InputError
+from mascarin.tables.times import local_time
 from mascarin.weather.records.channels import CHANNELS
 
 if TYPE_CHECKING:
@@ -102,6 +103,7 @@ def require_set_points_apart(
     positions: Mapping[str, int],
     channels: Sequence[str],
     times: Times,
+    edges: Array,
 ) -> None:
     """Refuse heating above cooling, and humidifying by a schedule or a column above drying.
 
@@ -119,6 +121,8 @@ def require_set_points_apart(
         Channels of the forcing after those of the climate.
     times : Times
         Times of the records.
+    edges : ndarray, shape (steps + 1,)
+        Ends of the steps, from the start. [s]
 
     Raises
     ------
@@ -140,10 +144,11 @@ def require_set_points_apart(
             continue
         member, step = crossing
         shape = (len(vectors), len(forcing))
+        when = local_time(times.first + float(edges[step]), times.zone)
         first, second = (float(np.broadcast_to(x, shape)[member, step]) for x in (low, high))
         raise InputError(
             f"{pair.where}: found {pair.low} to {first:g}{pair.unit} above {pair.high} to "
-            f"{second:g}{pair.unit} at the end of the step from {times.index[step]:%Y-%m-%d %H:%M}"
+            f"{second:g}{pair.unit} at the end of the step from {when:%Y-%m-%d %H:%M}"
             f"{f' (member {member})' if len(vectors) > 1 else ''}; expected a set point of {pair.low} at or "
             f"below that of {pair.high} at all times: lower the one or raise the other"
         )

@@ -47,7 +47,12 @@ TABLE: Final[Mapping[str, tuple[str, str]]] = {
         "str, datetime or pandas.Timestamp, optional",
         "End of the period, as `start`. Default: the last whole step of the climate.",
     ),
-    "step": ("str or float", "Time step, such as ``15min``, or a number of seconds. [s]"),
+    "step": (
+        "str or float",
+        "Time step, such as ``15min``, or a number of seconds. Text such as ``auto 0.05K every 1h``: steps "
+        "that follow the weather, chosen before the run within a tolerance, with records every hour "
+        "(docs/speed.md). [s]",
+    ),
     "scheme": (
         "str",
         "``sdirk2`` (second order), ``linearly-implicit`` (the same stages by one linear solve each where "

@@ -309,7 +309,7 @@ class VectorRuns:
         self._limits.require(vectors)
         require_set_points_apart(
             self.building, vectors, self.compiled.forcing, positions=self._positions,
-            channels=self.channels, times=self.times,
+            channels=self.channels, times=self.times, edges=self.compiled.edges,
         )  # fmt: skip
         require_laws(self.building, vectors, positions=self._positions)
         if self.building.controls:

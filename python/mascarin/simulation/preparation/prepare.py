@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -15,9 +16,11 @@ from mascarin.building import Building
 from mascarin.building.engine_input.series_users import courses
 from mascarin.building.outputs.output import chosen
 from mascarin.building.parts.envelope.convection import measured_column
+from mascarin.engine_errors import plan_of
 from mascarin.errors import InputError
 from mascarin.simulation.checks.flow_balance import require_balanced_flows
 from mascarin.simulation.checks.wind_check import require_wind
+from mascarin.simulation.preparation import step_sequence
 from mascarin.simulation.preparation.initial import MeasuredStart, resolved
 from mascarin.simulation.preparation.initial import read as read_initial
 from mascarin.simulation.preparation.initial_state import Ambient, GivenStart
@@ -25,6 +28,7 @@ from mascarin.simulation.preparation.limits import require_scheme
 from mascarin.simulation.preparation.sky import with_sky_of
 from mascarin.simulation.preparation.weather_inputs import with_weather_inputs
 from mascarin.simulation.records.times import Times
+from mascarin.tables.steps import Steps
 from mascarin.tables.times import stamps_of
 from mascarin.tables.timezones import seconds_at, with_year
 from mascarin.weather import (
@@ -42,15 +46,19 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
+    from mascarin._io.durations import AutoStep
     from mascarin.building import EngineDescription, Output
     from mascarin.simulation.preparation.initial_state import InitialTemperatures
     from mascarin.simulation.preparation.options import Scheme, TimeLike
+    from mascarin.simulation.preparation.step_sequence import StepSequence
     from mascarin.simulation.preparation.weather_inputs import WeatherInputs
+    from mascarin.tables.arrays import Halvings
 
     Array = npt.NDArray[np.float64]
 
 __all__ = [
     "changed_parameters",
+    "chosen_forcing_of",
     "chosen_outputs",
     "forcing_of",
     "in_climate",
@@ -214,6 +222,7 @@ def forcing_of(
     times: Times,
     scheme: Scheme,
     measurements: Measurements | None,
+    halvings: Halvings | None = None,
 ) -> tuple[Array, WeatherInputs | None]:
     """Climate, measured columns and schedules at every stage, and what of the weather is a parameter.
 
@@ -237,6 +246,7 @@ def forcing_of(
         measurements,
         limits=limits_of_columns(building),
         further=len(names),
+        halvings=halvings,
     )
     forcing = np.asarray(weather, dtype=np.float64)
     if names:
@@ -249,12 +259,22 @@ def forcing_of(
             times.step,
             scheme,
             measurements,
+            halvings,
         )
     _require_numbers(forcing, description.channels, building)
-    require_balanced_flows(building, forcing, description.channels, (times.start, times.step))
+    steps = Steps.over(times.zone, times.start, times.end, times.step, scheme, halvings)
+    begins = np.asarray(times.first + steps.edges, dtype=np.float64)
+    require_balanced_flows(building, forcing, description.channels, begins, times.zone)
     require_wind(building, climate, forcing)
     return with_weather_inputs(
-        building, climate, description, forcing, times=times, scheme=scheme, measurements=measurements
+        building,
+        climate,
+        description,
+        forcing,
+        times=times,
+        scheme=scheme,
+        measurements=measurements,
+        halvings=halvings,
     )
 
 
@@ -281,9 +301,11 @@ def settings_of(
     step_seconds: float,
     scheme: Scheme,
     first_period: float,
+    sequence: StepSequence | None = None,
 ) -> dict[str, Any]:
     """Step, scheme, start and repeated period, as the engine reads them."""
-    steps = min(max(round(first_period / step_seconds), 1), len(forcing))
+    intervals = len(forcing) if sequence is None else round(sequence.edges[-1] / step_seconds)
+    steps = min(max(round(first_period / step_seconds), 1), intervals)
     temperatures: float | dict[str, list[float]]
     if initial is None:
         # The temperature that the repetition starts from changes only its length.
@@ -292,7 +314,11 @@ def settings_of(
         temperatures = initial
     else:
         temperatures = {key: list(getattr(initial, key)) for key in ("cells", "faces", "air")}
+    if sequence is not None:
+        steps = sequence.count_in(steps)
+    lengths = {} if sequence is None else {"halvings": sequence.halvings.tolist()}
     return {
+        **lengths,
         "dt": step_seconds,
         "scheme": scheme,
         "initial": temperatures,
@@ -300,6 +326,59 @@ def settings_of(
         "warmup_tolerance": REPEATED_WITHIN,
         "warmup_max_cycles": MAX_REPETITIONS,
     }
+
+
+def chosen_forcing_of(
+    auto: AutoStep | None,
+    building: Building,
+    climate: Climate,
+    description: EngineDescription,
+    *,
+    times: Times,
+    scheme: Scheme,
+    measurements: Measurements | None,
+    start: float | GivenStart | MeasuredStart | None,
+    first_period: float,
+    outputs: Sequence[Output],
+) -> tuple[Array, WeatherInputs | None, StepSequence | None]:
+    """As `forcing_of`, with the steps of the run, which are chosen with the values of the building.
+
+    Parameters
+    ----------
+    auto : AutoStep or None
+        Tolerance; None: all steps have the length of `times`.
+    building, climate, description, times, scheme, measurements
+        As in `forcing_of`; `times` are those of the records.
+    start : float, GivenStart, MeasuredStart or None
+        What the run starts from.
+    first_period : float
+        Length of the repeated period. [s]
+    outputs : sequence of Output
+        What is recorded.
+
+    Raises
+    ------
+    InputError
+        The tolerance cannot be met, or an output depends on equal steps.
+    """
+    made = partial(forcing_of, building, climate, description, scheme=scheme, measurements=measurements)
+    if auto is None:
+        return *made(times=times), None
+    step_sequence.require_outputs(building, outputs)
+    forcings = [
+        made(times=replace(times, step=times.step / 2**level))[0]
+        for level in range(step_sequence.weather_levels(times.step) + 1)
+    ]
+    initial = start_of(start, building, description, forcings[-1], times.start)
+    settings = settings_of(
+        initial, forcings[0], step_seconds=times.step, scheme=scheme, first_period=first_period
+    )
+    nominal = description.values  # noqa: PD011 (no pandas object)
+    sequence = step_sequence.chosen_sequence(
+        auto, times.step, (plan_of(description.json), nominal), forcings, settings, (times.first, times.zone),
+        controlled=bool(building.controls),
+    )  # fmt: skip
+    return *made(times=times, halvings=sequence.halvings), sequence
 
 
 def limits_of_columns(building: Building) -> dict[str, tuple[float, float]]:

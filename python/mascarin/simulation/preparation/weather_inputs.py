@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from mascarin.building.parts.site import Site
     from mascarin.simulation.preparation.options import Scheme
     from mascarin.simulation.records.times import Times
+    from mascarin.tables.arrays import Halvings
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -126,6 +127,7 @@ def with_weather_inputs(
     times: Times,
     scheme: Scheme,
     measurements: Measurements | None,
+    halvings: Halvings | None = None,
 ) -> tuple[Array, WeatherInputs | None]:
     """The forcing with the errors that a building states for its weather, and how it depends on them.
 
@@ -139,7 +141,7 @@ def with_weather_inputs(
         Its parameters and channels.
     forcing : ndarray, shape (steps, stages, channels)
         Without errors. [unit of each channel]
-    times, scheme, measurements
+    times, scheme, measurements, halvings
         As of the run.
 
     Raises
@@ -152,8 +154,9 @@ def with_weather_inputs(
     names = tuple(building.weather.columns)
     columns = description.channels[: len(description.channels) - len(description.schedules)]
     corrected = corrected_forcing(
-        building, climate, columns, names, times=times, scheme=scheme, measurements=measurements
-    )
+        building, climate, columns, names,
+        times=times, scheme=scheme, measurements=measurements, halvings=halvings,
+    )  # fmt: skip
     paths = [*(f"{PREFIX}columns.{name}.{key}" for name in names for key in _KEYS), f"{PREFIX}clock"]
     positions = np.array([description.paths.index(path) for path in paths], dtype=np.int64)
     steps = np.array([*(step for name in names for step in _steps_of(corrected, name)), _CLOCK])
@@ -198,6 +201,7 @@ def corrected_forcing(
     times: Times,
     scheme: Scheme,
     measurements: Measurements | None,
+    halvings: Halvings | None = None,
 ) -> CorrectedForcing:
     """The forcing of a run as a function of errors of the weather.
 
@@ -211,7 +215,7 @@ def corrected_forcing(
         Measured columns of the forcing.
     names : sequence of str
         Columns that have errors.
-    times, scheme, measurements
+    times, scheme, measurements, halvings
         As of the run.
 
     Raises
@@ -223,7 +227,7 @@ def corrected_forcing(
         climate.record,
         None if measurements is None else measurements.record,
         building.site,
-        Steps.over(climate.grid.zone, times.start, times.end, times.step, scheme),
+        Steps.over(climate.grid.zone, times.start, times.end, times.step, scheme, halvings),
         columns,
         names,
     )

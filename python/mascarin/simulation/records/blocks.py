@@ -94,6 +94,9 @@ class Watch:
         What is recorded; behind it in a row is what `unmelted.watched` names, then `coarse.watched`.
     scheme : str
         Time-stepping scheme.
+    chosen : object, optional
+        Steps that were chosen: their error was estimated before the run, so that no air is judged by its
+        bends.
 
     Attributes
     ----------
@@ -103,14 +106,16 @@ class Watch:
         Of air temperatures.
     """
 
-    def __init__(self, building: Building, outputs: Sequence[Output], scheme: str = "sdirk2") -> None:
+    def __init__(
+        self, building: Building, outputs: Sequence[Output], scheme: str = "sdirk2", chosen: object = None
+    ) -> None:
         # The package imports pydantic, which an evaluation for GenOpt does without.
         from mascarin.simulation.checks import unmelted
 
         melting, airs = unmelted.watched(building), step_check.watched(building, outputs)
         self._melting = slice(len(outputs), len(outputs) + len(melting))
         self.melting = unmelted.Extremes(building)
-        self.bends = step_check.Bends(building, [*outputs, *melting, *airs], scheme)
+        self.bends = step_check.Bends(building, [*outputs, *melting, *airs] if chosen is None else [], scheme)
 
     def add(self, rows: Array) -> None:
         """Watch the next rows, shape (n, outputs and watched outputs)."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
+from mascarin.simulation.records.provenance import Provenance, words_of
+
 if TYPE_CHECKING:
     import pandas as pd
-
-    from mascarin.simulation.records.provenance import Provenance
 
 
 #: Attribute ``long_name`` of the coordinates of time, in memory and in files.
@@ -59,6 +59,7 @@ def rows(
         ("climate", str(source) if source else "table"),
         ("period", f"{index[0]:%Y-%m-%d %H:%M} to {index[-1]:%Y-%m-%d %H:%M} {index.tz}"),
         ("step", f"{notes.step_seconds:g} s, {notes.scheme}, {len(index)} rows"),
+        *([] if notes.steps is None else [("steps", words_of(notes.steps))]),
         ("start", notes.start),
         (f"{len(names)} outputs", shown),
         ("energy balance", f"relative residual {residual:.1e}"),

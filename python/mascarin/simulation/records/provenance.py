@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Self
 
 from mascarin import __version__
+from mascarin._io.durations import length_words
 from mascarin._io.sealed import own_files
 
 _KEYS: Final = {"version": "mascarin_version", "building_hash": "building_sha256"}
@@ -17,6 +18,7 @@ _TYPES: Final[dict[str, type | tuple[type, ...]]] = {
     "climate": dict,
     "measurements": (dict, type(None)),
     "step_seconds": (int, float),
+    "steps": (dict, type(None)),
     "scheme": str,
     "start": str,
     "changed": dict,
@@ -61,6 +63,9 @@ class Provenance:
         Version of Mascarin.
     measurements : dict or None
         File, hash, period, columns and conversions of the measured table; None where none was given.
+    steps : dict or None
+        Steps that were chosen: tolerance, number, lengths, estimated error and sequence, see `StepSequence`;
+        None where all are of one length.
     """
 
     building: str
@@ -76,6 +81,7 @@ class Provenance:
     reversals: int = 0
     version: str = field(default=__version__)
     measurements: Mapping[str, Any] | None = None
+    steps: Mapping[str, Any] | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
@@ -86,6 +92,7 @@ class Provenance:
             "climate": dict(self.climate),
             "measurements": None if self.measurements is None else dict(self.measurements),
             "step_seconds": self.step_seconds,
+            **({} if self.steps is None else {"steps": dict(self.steps)}),
             "scheme": self.scheme,
             "start": self.start,
             "changed": dict(self.changed),
@@ -110,7 +117,26 @@ class Provenance:
             A value is missing, or of another type.
         """
         own_files.require(
-            values, _TYPES, further=("nested_stages", "halved_steps", "reversals", "measurements")
+            values, _TYPES, further=("nested_stages", "halved_steps", "reversals", "measurements", "steps")
         )
         names = {_KEYS.get(name, name): name for name in cls.__dataclass_fields__}
         return cls(**{names[key]: value for key, value in values.items() if key in names})
+
+
+def words_of(steps: Mapping[str, Any]) -> str:
+    """What `StepSequence.to_dict` says, in a line for people.
+
+    Parameters
+    ----------
+    steps : mapping
+        The values.
+    """
+    shortest, longest, records = (
+        length_words(steps[key]) for key in ("shortest_s", "longest_s", "record_interval_s")
+    )
+    fixed = steps["steps_of_the_shortest_length"]
+    return (
+        f"{steps['steps']} of {shortest} to {longest}, records every {records}; estimated error of a step "
+        f"{steps['estimated_error_K']:.2g} K at most (tolerance {steps['tolerance_K']:g} K); steps of "
+        f"{shortest} alone would be {fixed}, {fixed / steps['steps']:.1f} times as many"
+    )

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin._io.durations import seconds_of
+from mascarin._io.durations import record_seconds, seconds_of
 from mascarin.errors import InputError
 from mascarin.measurements.observation import PERIODS
 from mascarin.study.file.description import IdentificationPlan
@@ -255,7 +255,7 @@ class StudyPeriods:
         """The longest whole number of steps in so much time; steps of the study, or of another length."""
         import pandas as pd
 
-        step = seconds_of(length or self._plan.step)
+        step = record_seconds(length or self._plan.step)
         return pd.Timedelta(seconds=step * math.floor(seconds / step + 1e-9))
 
     @cached_property

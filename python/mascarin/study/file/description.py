@@ -15,7 +15,7 @@ from mascarin.comfort import ComfortSettings
 from mascarin.measurements.sensor import Sensor as Sensor
 from mascarin.measurements.sensor import SensorPeriods as SensorPeriods
 from mascarin.measurements.sensor import with_output
-from mascarin.measurements.time_fields import Duration, Hours, Span, Spans, Stretch, Time
+from mascarin.measurements.time_fields import Duration, Hours, RunStep, Span, Spans, Stretch, Time
 from mascarin.sensitivity.base.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.study.file.data_sources import (
@@ -95,7 +95,7 @@ class SensitivityPlan(Part):
     )
     seed: int = Field(1, description="Seed of the random numbers")
     interval: Duration = Field("1h", description="Interval of the analyzed outputs")
-    step: Duration | None = Field(
+    step: RunStep | None = Field(
         None,
         description="Time step of these runs, and of those that derive the effects of all parameters for the "
         "analysis of the residuals; a whole part of the interval. By default that of the study",
@@ -364,7 +364,10 @@ class StudyPlan(Part):
         None,
         description="Gain, offset and clock of columns of the weather, in place of those of the building",
     )
-    step: Duration = Field("15min", description="Time step")
+    step: RunStep = Field(
+        "15min",
+        description="Time step, or `auto 0.05K every 30min`: steps that are chosen, with a tolerance",
+    )
     scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = Field(
         "sdirk2", description="Time integration scheme"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from mascarin._io.durations import seconds_of
+from mascarin._io.durations import record_seconds, seconds_of
 from mascarin.building.parameters.ties import expanded
 from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import checked_range, factors_of
@@ -13,7 +13,7 @@ from mascarin.sensitivity.methods import plan as design
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.measurements.time_fields import Duration
+    from mascarin.measurements.time_fields import Duration, RunStep
     from mascarin.sensitivity import Factor
     from mascarin.sensitivity.methods import Plan
     from mascarin.study.file.description import SensitivityPlan
@@ -49,8 +49,8 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
         runs_of(plan, factors(building, plan))
 
 
-def _require_whole(interval: Duration, step: Duration) -> None:
-    steps = seconds_of(interval) / seconds_of(step)
+def _require_whole(interval: Duration, step: RunStep) -> None:
+    steps = seconds_of(interval) / record_seconds(step)
     if steps < 1.0 or abs(steps - round(steps)) > 1e-9:
         raise InputError(
             f"found {step}, expected a whole part of the interval of the analyzed outputs, {interval}: "

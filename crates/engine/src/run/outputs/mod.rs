@@ -1,6 +1,6 @@
 //! What a run records: the table of all outputs. All that is said of an output anywhere follows from its row.
 
-mod row;
+pub(crate) mod row;
 mod values;
 
 use serde::Deserialize;

@@ -341,8 +341,18 @@ pub fn forcing(
     dt: f64,
     fill: impl Fn(f64, &mut [f64]),
 ) -> Vec<f64> {
+    forcing_over(plan, scheme, (0..steps).map(|step| (step as f64, dt)), fill)
+}
+
+/// The same over steps of different lengths: the start of each, in its own length [s].
+pub fn forcing_over(
+    plan: &Plan,
+    scheme: Scheme,
+    steps: impl Iterator<Item = (f64, f64)>,
+    fill: impl Fn(f64, &mut [f64]),
+) -> Vec<f64> {
     let mut all = Vec::new();
-    for step in 0..steps {
+    for (start, dt) in steps {
         for node in nodes(scheme) {
             let mut row = vec![0.0; plan.n_channels()];
             row[channel::AIR_TEMPERATURE] = 20.0;
@@ -351,7 +361,7 @@ pub fn forcing(
             row[channel::PRESSURE] = f64::NAN;
             row[channel::DIRECT_NORMAL_EXTRA] = 1361.0;
             row[channel::SUN_UP] = -1.0;
-            fill((step as f64 + node) * dt, &mut row);
+            fill((start + node) * dt, &mut row);
             all.extend(row);
         }
     }
@@ -400,6 +410,7 @@ pub fn options(scheme: Scheme, dt: f64, outputs: Vec<Output>) -> Options {
         record_from: 0,
         record_every: 1,
         residuals: false,
+        lengths: None,
     }
 }
 
