@@ -109,8 +109,8 @@ class AutoStep:
     interval: float | None = None
 
     def __str__(self) -> str:
-        every = "" if self.interval is None else f" every {self.interval:g}s"
-        return f"auto {self.tolerance:g}K{every}"
+        records = "" if self.interval is None else f" every {self.interval:g}s"
+        return f"auto {self.tolerance:g}K{records}"
 
 
 def auto_step(step: str | float, where: str = "step") -> AutoStep | None:
@@ -149,8 +149,8 @@ def auto_step(step: str | float, where: str = "step") -> AutoStep | None:
             f"{where}: found {step!r}, expected 'auto', 'auto TOLERANCE' or 'auto TOLERANCE every "
             f"INTERVAL' with a tolerance of {low:g} to {high:g} K, such as 'auto 0.02K every 1h'"
         )
-    every = match["every"]
-    return AutoStep(tolerance, None if every is None else seconds_of(every, where))
+    interval = match["every"]
+    return AutoStep(tolerance, None if interval is None else seconds_of(interval, where))
 
 
 def record_seconds(step: str | float, where: str = "step") -> float:

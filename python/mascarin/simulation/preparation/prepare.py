@@ -361,12 +361,12 @@ def chosen_forcing_of(
     InputError
         The tolerance cannot be met, or an output depends on equal steps.
     """
-    made = partial(forcing_of, building, climate, description, scheme=scheme, measurements=measurements)
+    forcing_in = partial(forcing_of, building, climate, description, scheme=scheme, measurements=measurements)
     if auto is None:
-        return *made(times=times), None
+        return *forcing_in(times=times), None
     step_sequence.require_outputs(building, outputs)
     forcings = [
-        made(times=replace(times, step=times.step / 2**level))[0]
+        forcing_in(times=replace(times, step=times.step / 2**level))[0]
         for level in range(step_sequence.weather_levels(times.step) + 1)
     ]
     initial = start_of(start, building, description, forcings[-1], times.start)
@@ -378,7 +378,7 @@ def chosen_forcing_of(
         auto, times.step, (plan_of(description.json), nominal), forcings, settings, (times.first, times.zone),
         controlled=bool(building.controls),
     )  # fmt: skip
-    return *made(times=times, halvings=sequence.halvings), sequence
+    return *forcing_in(times=times, halvings=sequence.halvings), sequence
 
 
 def limits_of_columns(building: Building) -> dict[str, tuple[float, float]]:
