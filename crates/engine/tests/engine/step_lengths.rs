@@ -86,7 +86,7 @@ fn means_weigh_by_length() {
     let outputs = vec![
         Output::HeatingLoad { zone: 0 },
         Output::CoolingLoad { zone: 0 },
-        Output::AirTemperature { zone: 0 },
+        Output::HeatingLoad { zone: 1 },
     ];
     let halvings = mixed(48);
     let rows = forcing_over(&plan, SCHEME, starts(&halvings).into_iter(), conditioned_weather);
@@ -96,8 +96,9 @@ fn means_weigh_by_length() {
     let run = try_run(&plan, &numbers, &rows, &given).unwrap();
     assert_eq!(run.records.len(), 49 * outputs.len());
     assert!(run.energy_balance.closure() < 1e-11, "{}", run.energy_balance.closure());
-    // The sum of the loads over all hours is the heat of the balance, by its own sum over all stages.
-    let sums = [0, 1].map(|k| run.records.chunks(3).skip(1).map(|row| row[k]).sum::<f64>() * HOUR);
+    // The sum of the loads of all zones over all hours is the heat of the balance, by its own sum over all stages.
+    let sum = |k: usize| run.records.chunks(3).skip(1).map(|row| row[k]).sum::<f64>() * HOUR;
+    let sums = [sum(0) + sum(2), sum(1)];
     let into = run.energy_balance.into;
     let [heating, cooling] =
         [mascarin_engine::energy_balance::Flow::Heating, mascarin_engine::energy_balance::Flow::Cooling]
@@ -241,7 +242,8 @@ fn chosen(plan: &Plan, tolerance: f64, hours: usize, fill: impl Fn(f64, &mut [f6
 }
 
 /// Air outside that jumps after some hours: the air of the room follows with a time constant that the steps resolve where it moves, and long
-/// steps are taken where nothing does. Against the same in steps of 7 s.
+/// steps are taken where nothing does. Against the same in steps of 7 s: errors of steps add up, so that each may have a fifth of the
+/// tolerance, as in `step: auto`.
 #[test]
 fn steps_follow_a_jump() {
     let plan = sheet();
@@ -255,8 +257,8 @@ fn steps_follow_a_jump() {
     let fine = records(&vec![9; 60 << 9]);
     let mut before = usize::MAX;
     for tolerance in [0.003, 0.03, 0.3] {
-        let choice = chosen(&plan, tolerance, 60, fill);
-        assert!(choice.errors.iter().all(|&error| error <= tolerance), "{tolerance} K");
+        let choice = chosen(&plan, 0.2 * tolerance, 60, fill);
+        assert!(choice.errors.iter().all(|&error| error <= 0.2 * tolerance), "{tolerance} K");
         let worst =
             records(&choice.halvings).iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst <= tolerance, "{worst} K with a tolerance of {tolerance} K");
