@@ -263,9 +263,10 @@ fn steps_follow_a_jump() {
             records(&choice.halvings).iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst <= tolerance, "{worst} K with a tolerance of {tolerance} K");
         let shortest = choice.halvings.iter().copied().max().unwrap();
-        // Before the jump nothing moves; steps of one length would be twice as many at least.
+        // Before the jump nothing moves. Steps of one length would be more, with a close tolerance eight times as many.
+        let saved = if tolerance < 0.01 { 8 } else { 1 };
         assert!(choice.halvings[..30].iter().skip(8).filter(|&&count| count == 0).count() >= 20);
-        assert!(2 * choice.halvings.len() < 60 << shortest, "{} steps", choice.halvings.len());
+        assert!(saved * choice.halvings.len() < 60 << shortest, "{} steps", choice.halvings.len());
         assert!(choice.halvings.len() < before);
         before = choice.halvings.len();
     }
