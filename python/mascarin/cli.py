@@ -52,7 +52,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command(
             "init",
             "mascarin.commands.studies.new_study:init",
-            "Copy an example study into a new folder.",
+            "Copy an example into a new folder: a study, or designs of a house.",
         ),
         Command(
             "schema",

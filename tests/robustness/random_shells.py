@@ -101,6 +101,9 @@ def outdoors(draw: Draw) -> Json:
             side |= _irradiance(draw, Side, "G_wall")
     if ((exposed["sun"] and "irradiance" not in side) or exposed["sky"]) and draw.chance(0.15):
         side["sky_view"] = draw.number(0.0, 1.0)
+        if exposed["sun"] and "irradiance" not in side:
+            # From the number that is drawn: all other draws stay as they are.
+            side["ground_view"] = 1.0 - side["sky_view"]
     if exposed["wind"] and draw.chance(0.25):
         side["height"] = draw.log(0.5, 60.0)
     if draw.chance(0.1):
@@ -204,6 +207,7 @@ def window(draw: Draw, schedules: Schedules, surface: str, between: bool, glazin
             outer |= _irradiance(draw, WindowOutside, "G_pane")
         elif draw.chance(0.1):
             outer["sky_view"] = draw.number(0.1, 1.0)
+            outer["ground_view"] = 1.0 - outer["sky_view"]
         if draw.chance(0.2):
             outer["height"] = draw.log(0.5, 60.0)
         if draw.chance(0.3):

@@ -133,18 +133,18 @@ def _space(volumes: FiniteVolumes, rates: Array) -> tuple[Array, Array]:
     conduction = np.zeros((len(rates), len(rates)))
     count, steady = 0, np.zeros(0)
     for rate in map(float, rates):
-        known = scaled[:, :count]
+        fields = scaled[:, :count]
         guess = None
         if count:
             # The best combination of the fields so far.
             matrix = conduction[:count, :count] + rate * np.eye(count)
-            guess = known @ np.linalg.solve(matrix, known.T @ (volumes.inside / root)) / root
+            guess = fields @ np.linalg.solve(matrix, fields.T @ (volumes.inside / root)) / root
         field = volumes.solve(volumes.inside, rate, guess)
         steady = field if rate == 0.0 else steady
         field = root * field
         size = float(np.linalg.norm(field))
         for _ in range(2):
-            field -= known @ (known.T @ field)
+            field -= fields @ (fields.T @ field)
         length = float(np.linalg.norm(field))
         if length > _DEPENDENT * size:
             scaled[:, count] = field / length

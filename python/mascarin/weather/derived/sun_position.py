@@ -118,8 +118,8 @@ def angle_from_path(record: WeatherRecord, latitude: float, longitude: float) ->
     sun = sun_over(record, latitude, longitude, (grid.start, grid.end))
     if not isinstance(sun, StatedSun):
         return 0.0
-    lit = sun.vectors[:, 2] > 0.0
-    if not lit.any():
+    sunlit = sun.vectors[:, 2] > 0.0
+    if not sunlit.any():
         return 0.0
-    cosine = np.sum(sun.vectors[lit] * sun.path.vector(sun.times[lit]), axis=-1)
+    cosine = np.sum(sun.vectors[sunlit] * sun.path.vector(sun.times[sunlit]), axis=-1)
     return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)).max()))
