@@ -73,6 +73,7 @@ impl Ready {
             record_from: call.record_from,
             record_every: call.record_every,
             residuals: false,
+            lengths: None,
         };
         Some(Self {
             plan,

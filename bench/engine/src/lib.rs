@@ -76,6 +76,7 @@ impl Case {
                 record_from: 0,
                 record_every: 1,
                 residuals: false,
+                lengths: None,
             },
         }
     }
