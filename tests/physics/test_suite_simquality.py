@@ -41,15 +41,16 @@ def test_both_readings_of_the_sun_are_listed_with_their_scores(
     data: CaseData, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (setting,) = (words for words in suites()["simquality"].settings if words.startswith("radiation"))
-    kept = scores(data)
+    hourly_means = scores(data)
     monkeypatch.setattr(cases, "with_sun", straight)
     lines = scores(data)
-    for words, found in (("kept, as its format says; mean score", kept), ("the mean score is", lines)):
-        assert f"{words} {np.mean(list(found.values())):.1f}" in setting
-    of_sun = [key for key in kept if "Strahlung" in key[1] and key[0].startswith("TF06")]
+    readings = (("kept, as its format says; mean score", hourly_means), ("the mean score is", lines))
+    for words, reading in readings:
+        assert f"{words} {np.mean(list(reading.values())):.1f}" in setting
+    of_sun = [key for key in hourly_means if "Strahlung" in key[1] and key[0].startswith("TF06")]
     assert len(of_sun) == 12
     assert min(lines[key] for key in of_sun) > 99.0
-    assert min(kept[key] for key in of_sun) < 94.0
+    assert min(hourly_means[key] for key in of_sun) < 94.0
 
 
 def test_the_reference_has_sun_after_the_last_hour_of_sun(data: CaseData) -> None:

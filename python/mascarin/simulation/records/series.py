@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from datetime import datetime
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import pandas as pd
 import xarray as xr
 
 from mascarin.errors import InputError
+
+Selected = TypeVar("Selected")
 
 
 class RunSeries(xr.DataArray):  # type: ignore[no-untyped-call]
@@ -45,14 +47,7 @@ class RunSeries(xr.DataArray):  # type: ignore[no-untyped-call]
             A time without an offset, or one that was not recorded.
         """
         labels = {**(indexers or {}), **indexers_kwargs}
-        if "time" not in labels or "time" not in self.indexes:
-            return super().sel(labels, method, tolerance, drop)
-        utc = _in_utc(self, labels["time"])
-        try:
-            return super().sel({**labels, "time": utc}, method, tolerance, drop)
-        except KeyError:
-            _require_time(self, labels["time"], utc, method, tolerance)
-            raise
+        return _selected(self, super().sel, labels, (method, tolerance, drop))
 
 
 class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
@@ -97,14 +92,22 @@ class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
             A time without an offset, or one that was not recorded.
         """
         labels = {**(indexers or {}), **indexers_kwargs}
-        if "time" not in labels or "time" not in self.indexes:
-            return super().sel(labels, method, tolerance, drop)
-        utc = _in_utc(self, labels["time"])
-        try:
-            return super().sel({**labels, "time": utc}, method, tolerance, drop)
-        except KeyError:
-            _require_time(self, labels["time"], utc, method, tolerance)
-            raise
+        return _selected(self, super().sel, labels, (method, tolerance, drop))
+
+
+def _selected(
+    data: Any, select: Callable[..., Selected], labels: dict[Any, Any], options: tuple[str | None, Any, bool]
+) -> Selected:
+    """What `sel` of xarray gives for labels, whose times have an offset."""
+    if "time" not in labels or "time" not in data.indexes:
+        return select(labels, *options)
+    utc = _in_utc(data, labels["time"])
+    try:
+        return select({**labels, "time": utc}, *options)
+    except KeyError:
+        method, tolerance, _ = options
+        _require_time(data, labels["time"], utc, method, tolerance)
+        raise
 
 
 def _require_time(
