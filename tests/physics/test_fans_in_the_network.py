@@ -81,8 +81,8 @@ def test_a_fan_against_stack(flow: float) -> None:
     pressure = brentq(balance, -50.0, 50.0, xtol=1e-13)
     for name, area, height in (("low", 0.2, 0.5), ("high", 0.1, 3.0)):
         expected = outflow(pressure, area, height)
-        found = last(results, f"{name}.outflow") - last(results, f"{name}.inflow")
-        assert found == pytest.approx(expected, rel=1e-4), name
+        net = last(results, f"{name}.outflow") - last(results, f"{name}.inflow")
+        assert net == pytest.approx(expected, rel=1e-4), name
     assert (last(results, "high.outflow") > 0.0) == (flow < 0.1)
     # The air that leaves is warmed by 20 K.
     leaving = flow + last(results, "high.outflow")
