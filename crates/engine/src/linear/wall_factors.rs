@@ -47,7 +47,7 @@ impl<S: Real> InUse<'_, S> {
 #[derive(Debug, Clone)]
 pub(crate) struct FactorStore<S> {
     keeps: bool,
-    kept: Vec<WallFactors<S>>,
+    factors: Vec<WallFactors<S>>,
     /// Which of them is replaced next.
     next: usize,
 }
@@ -55,7 +55,7 @@ pub(crate) struct FactorStore<S> {
 impl<S: Real> FactorStore<S> {
     /// Keeps nothing.
     pub(crate) fn new() -> Self {
-        Self { keeps: false, kept: Vec::new(), next: 0 }
+        Self { keeps: false, factors: Vec::new(), next: 0 }
     }
 
     /// Keeps factors from now on.
@@ -70,15 +70,16 @@ impl<S: Real> FactorStore<S> {
         if !self.keeps || current.length.is_nan() {
             return false;
         }
-        if let Some(other) = self.kept.iter_mut().find(|other| other.length.to_bits() == length.to_bits()) {
+        if let Some(other) = self.factors.iter_mut().find(|other| other.length.to_bits() == length.to_bits())
+        {
             current.exchange(other);
             current.transition_matrices.begin();
             return true;
         }
-        if self.kept.len() < MOST {
-            self.kept.push(current.copied());
+        if self.factors.len() < MOST {
+            self.factors.push(current.copied());
         } else {
-            current.exchange(&mut self.kept[self.next]);
+            current.exchange(&mut self.factors[self.next]);
             self.next = (self.next + 1) % MOST;
         }
         false

@@ -132,12 +132,12 @@ impl Pilot<'_, '_> {
         let mut choice = StepChoice { halvings: Vec::new(), errors: Vec::new() };
         let (mut now, mut at, mut level) = (start, 0_usize, 0_u32);
         // A step that was made before: the first half of one that was not accepted.
-        let mut made: Option<Reached> = None;
+        let mut first_half: Option<Reached> = None;
         while at < end {
             self.control.check()?;
             let unit = 1_usize << (self.depth - level);
             let last = level >= u32::from(criterion.most_halvings) || self.is_first_possible(at, level);
-            let whole = made.take().map_or_else(|| self.step(&now, at, level), Ok);
+            let whole = first_half.take().map_or_else(|| self.step(&now, at, level), Ok);
             let half = self.step(&now, at, level + 1);
             let (whole, half) = match (whole, half) {
                 (Ok(whole), Ok(half)) => (whole, half),
@@ -170,14 +170,14 @@ impl Pilot<'_, '_> {
             };
             level += 1;
             if error <= GROWTH * criterion.tolerance {
-                made = Some(half);
+                first_half = Some(half);
             } else if level < u32::from(criterion.most_halvings)
                 && error.is_finite()
                 && !self.is_first_possible(at, level)
             {
                 level += 1;
             } else {
-                made = Some(half);
+                first_half = Some(half);
             }
         }
         Ok(choice)
