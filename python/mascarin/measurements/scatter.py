@@ -34,6 +34,10 @@ _PRODUCT: Final = -15.0
 _EQUAL: Final = 1e-9
 #: Relative distance from a whole number that rounding may leave.
 _ROUNDED: Final = 1e-4
+#: Readings of at most this part of the largest count as those of something that is off.
+_OFF: Final = 0.02
+#: Least part of a record that is off.
+_OFTEN: Final = 0.1
 
 
 def scatter(readings: ArrayLike) -> float:
@@ -69,6 +73,33 @@ def scatter(readings: ArrayLike) -> float:
     # Parts without any change, such as a reading that is below the resolution, say the resolution only.
     variance = min(float(square[quiet].mean()) / _SQUARE, float(product[quiet].mean()) / _PRODUCT)
     return max(math.sqrt(max(variance, 0.0) / _share_of_quiet()), resolution(x) / math.sqrt(12.0))
+
+
+def zero_reading(readings: ArrayLike) -> float:
+    """Find what a meter of a power or a flow reads while what it measures is off.
+
+    Parameters
+    ----------
+    readings : array_like, shape (n,)
+        NaN where there is none; several days or more. [unit]
+
+    Returns
+    -------
+    float
+        Root mean square of the readings of at most 2 % of the largest; NaN if these are fewer than a tenth of
+        the record, so that nothing is off for long. [unit]
+
+    Examples
+    --------
+    >>> zero_reading([0.1, 0.1, 900.0, 1100.0, 0.1]), zero_reading([500.0, 900.0, 1100.0])
+    (0.1, nan)
+    """
+    size = np.abs(np.asarray(readings, dtype=np.float64))
+    size = size[np.isfinite(size)]
+    off = size[size <= _OFF * size.max()] if size.size else size
+    if off.size == 0 or off.size < _OFTEN * size.size or not size.any():
+        return math.nan
+    return float(math.sqrt(np.mean(off**2)))
 
 
 def resolution(readings: ArrayLike) -> float:

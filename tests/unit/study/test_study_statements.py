@@ -75,3 +75,20 @@ def test_sensors_without_an_offset_say_so(bench: Bench) -> None:
     bench.edit("uncertainty: 0.3}", "repeatability: 0.03}")
     assert not Study.from_yaml(bench.study).context.estimates_errors
     assert said(bench) == {}
+
+
+def test_a_meter_that_reads_zero_has_no_offset(bench: Bench) -> None:
+    """An offset of half of what was measured would be taken from the wall."""
+    table = pd.read_csv(bench.table, index_col="time")
+    hours = pd.DatetimeIndex(table.index).hour
+    # The heater is off in the night, and the meter reads 0.2 W then.
+    table["heater"] = [0.2 if hour < 8 else 300.0 + hour for hour in hours]
+    table.to_csv(bench.table)
+    stated = "expanded_uncertainty: 250, relative: 0.02"
+    bench.edit("sensors:\n", f"sensors:\n  heater: {{column: heater, output: wall.inside_flux, {stated}}}\n")
+    found = said(bench)["heater"]
+    # 250 W/m2 / 1.96 less the scatter that the jumps of the record show.
+    assert "reads 0.2 W/m2 where all is off, and an offset of 12" in found
+    remedy = found.partition("write ")[2].partition(",")[0]
+    bench.edit(stated, f"{remedy}, repeatability: 40, relative: 0.02")
+    assert "heater" not in said(bench)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mascarin._io.durations import seconds_of
 from mascarin.calibration.errors.joint_estimation import estimate_jointly
@@ -15,7 +16,7 @@ from mascarin.calibration.errors.linear_estimation import ErrorStatement
 from mascarin.calibration.errors.posterior_checks import judged
 from mascarin.calibration.errors.sensor_errors import SensorError
 from mascarin.errors import InputError
-from mascarin.measurements.scatter import scatter
+from mascarin.measurements.scatter import scatter, zero_reading
 
 if TYPE_CHECKING:
     from mascarin.calibration.base.result import Calibration
@@ -33,6 +34,10 @@ LIMIT: Final = 0.1
 PERSISTENCE: Final = 5.0
 #: Shortest period from which errors of days can be estimated. [h]
 MIN_HOURS: Final = 48.0
+#: Units in which zero does not say that something is off.
+_WITHOUT_ZERO: Final = frozenset({"degC", "%", "-"})
+#: Stated offset, in readings at zero, from which the record contradicts it.
+_MOST_AT_ZERO: Final = 3.0
 
 
 def only_scatter(sensor: Sensor) -> bool:
@@ -242,7 +247,52 @@ def with_sensor_errors(
 
     estimates, joint = estimate_jointly(fit, stated, options, effects_of_depths)
     days = [f"{day:%Y-%m-%d}" for day in local.normalize().unique()]
-    return judged(estimates, joint, sizes_of(list(sensors), errors), days)
+    estimates = judged(estimates, joint, sizes_of(list(sensors), errors), days)
+    contradicted = (
+        beside_zero(name, output.unit, error, readings)
+        for name, output, error, readings in zip(
+            sensors, simulation.outputs, errors, observation.measured.T, strict=True
+        )
+    )
+    return replace(estimates, warnings=(*estimates.warnings, *filter(None, contradicted)))
+
+
+def beside_zero(name: str, unit: str, error: SensorError, readings: ArrayLike) -> str | None:
+    """Say that a meter reads zero while all is off, although an offset is stated for it.
+
+    Most of the uncertainty that a sensor states counts as an offset. The error of a meter of power or flow is
+    mostly in proportion to its reading; an offset that it does not have takes what parameters should explain.
+
+    Parameters
+    ----------
+    name, unit : str
+        Of the sensor.
+    error : SensorError
+        What its readings share.
+    readings : array_like, shape (n,)
+        Its record. [unit]
+
+    Returns
+    -------
+    str or None
+        None if the record does not rest at zero, or does not contradict the offset.
+
+    Examples
+    --------
+    >>> heating = [0.1, 0.1, 900.0, 1100.0]
+    >>> beside_zero("power", "W", SensorError(offset=50.0), heating).partition(",")[0]
+    'power: the record reads 0.1 W where all is off'
+    >>> beside_zero("power", "W", SensorError(gain=0.02), heating) is None
+    True
+    """
+    zero = math.nan if unit in _WITHOUT_ZERO else zero_reading(readings)
+    if not math.isfinite(zero) or error.offset <= _MOST_AT_ZERO * zero:
+        return None
+    return (
+        f"{name}: the record reads {zero:.2g} {unit} where all is off, and an offset of {error.offset:.3g} "
+        f"{unit} (standard uncertainty) follows from what is stated: write offset: {zero:.2g}, with "
+        "repeatability for what scatters and relative for an error in proportion to the reading"
+    )
 
 
 def sizes_of(names: Sequence[str], errors: Sequence[SensorError]) -> dict[str, float]:

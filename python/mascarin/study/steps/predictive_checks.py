@@ -16,9 +16,9 @@ from mascarin.calibration.errors.posterior_checks import (
     widening,
     with_wider_intervals,
 )
-from mascarin.calibration.errors.stated_errors import counted_as_scatter
+from mascarin.calibration.errors.stated_errors import beside_zero, counted_as_scatter
 from mascarin.study.context.error_rule import all_scatter, reason_of
-from mascarin.study.steps.error_model import local_hours, scatter_of, stated_sizes
+from mascarin.study.steps.error_model import local_hours, scatter_of, sensor_errors, stated_sizes
 from mascarin.study.steps.prediction_intervals import coverage_of
 
 if TYPE_CHECKING:
@@ -76,7 +76,8 @@ def statements(study: StudyContext) -> list[Contradiction]:
     study : StudyContext
         The study; nothing is run.
     """
-    return [*_scatters(study), *_twins(study), *_few_days(study), *_priors(study), *_not_estimated(study)]
+    checks = (_scatters, _zeros, _twins, _few_days, _priors, _not_estimated)
+    return [contradiction for check in checks for contradiction in check(study)]
 
 
 def with_doubt(
@@ -187,6 +188,20 @@ def _scatters(study: StudyContext) -> Iterator[Contradiction]:
                 f"uncertainty of {stated:.2g} that is stated: state what the sensor has, or mask what is "
                 "no reading",
             )
+
+
+def _zeros(study: StudyContext) -> Iterator[Contradiction]:
+    """Meters that read zero while all is off, although an offset is stated for them."""
+    if not study.estimates_errors:
+        return
+    names = list(study.plan.sensors)
+    for name, error, readings in zip(
+        names, sensor_errors(study, names), study.observation.measured.T, strict=True
+    ):
+        unit = study.building.output(study.plan.sensors[name].output).unit
+        text = beside_zero(name, unit, error, readings)
+        if text is not None:
+            yield Contradiction("statement", name, text)
 
 
 def _twins(study: StudyContext) -> Iterator[Contradiction]:
