@@ -73,17 +73,21 @@ def page(
     str
         HTML in which everything from outside is escaped.
     """
-    cells = "".join(
-        f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
-        f"<td style='text-align:left'>{html.escape(value)}</td></tr>"
-        for name, value in rows
-    )
+    cells = "".join(map(_row, rows))
     parts = [f"<div><strong>{html.escape(title)}</strong><table>{cells}</table>"]
     for heading, table in (tables or {}).items():
         parts.append(_folded(heading, table.to_html(max_rows=30, border=0)))
     for heading, figure in (figures or {}).items():
         parts.append(_folded(heading, svg(figure)))
     return "".join([*parts, "</div>"])
+
+
+def _row(row: tuple[str, str]) -> str:
+    """A name and a value; a further value of the name above has no head, which would be empty for a reader."""
+    name, value = map(html.escape, row)
+    head = "th" if name else "td"
+    left = "style='text-align:left'"
+    return f"<tr><{head} {left}>{name}</{head}><td {left}>{value}</td></tr>"
 
 
 def svg(figure: Figure) -> str:

@@ -222,5 +222,9 @@ def test_results_are_short_in_print_and_can_be_pickled(method: Any) -> None:
     found = run(plan(factors, method), lambda x: x[:, None, :5] + x[:, None, 5:10], outputs=names)
     assert len(repr(found).splitlines()) <= 15
     assert method in repr(found)
-    assert "<svg" in found._repr_html_()
+    shown = found._repr_html_()
+    assert "<svg" in shown
+    # Five factors of each output: the rows of the second and later ones have no empty head (axe).
+    assert "room 4.air_temperature</th>" in shown
+    assert "'></th>" not in shown
     assert np.array_equal(pickle.loads(pickle.dumps(found)).index, found.index)  # noqa: S301 (written here)
