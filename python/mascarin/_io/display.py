@@ -83,7 +83,7 @@ def page(
 
 
 def _row(row: tuple[str, str]) -> str:
-    """A name and a value; a further value of the name above has no head, which would be empty for a reader."""
+    """A name and a value; without a name, as for further values of the name above, there is no empty head."""
     name, value = map(html.escape, row)
     head = "th" if name else "td"
     left = "style='text-align:left'"

@@ -225,6 +225,6 @@ def test_results_are_short_in_print_and_can_be_pickled(method: Any) -> None:
     shown = found._repr_html_()
     assert "<svg" in shown
     # Five factors of each output: the rows of the second and later ones have no empty head (axe).
-    assert "room 4.air_temperature</th>" in shown
+    assert "room 0.air_temperature</th>" in shown
     assert "'></th>" not in shown
     assert np.array_equal(pickle.loads(pickle.dumps(found)).index, found.index)  # noqa: S301 (written here)
