@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+from pathlib import Path
 
 import pytest
 from pydantic_core import PydanticCustomError
@@ -11,7 +12,9 @@ from pydantic_core import PydanticCustomError
 from crossing_features import building as feature
 from mascarin.building import quantities
 from mascarin.building.base.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
+from mascarin.building.building import Building
 from mascarin.errors import InputError
+from mascarin.examples import box
 
 LENGTH = Quantity("m", "A length", Percent(10, "a ruler"), Limits(above=0, at_most=5))
 
@@ -129,3 +132,15 @@ def test_a_number_of_a_formula_without_a_unit_may_be_given_one() -> None:
     assert remedied.parameter("derived_outputs.half.n").unit == "m"
     with pytest.raises(InputError, match="value, range, source, assumed, unit, limits"):
         described.replace({"derived_outputs.half": {"formula": "gain/n", "n": {"value": 2, "units": "m"}}})
+
+
+def test_a_building_whose_value_has_left_its_range_can_be_read_again(tmp_path: Path) -> None:
+    """As a calibrated building, whose tied factor moves values beyond the ranges of the description."""
+    described = box().replace(
+        {"zones.room.infiltration.constant": Number(0.5, range=(0.3, 0.7), source="a test")}
+    )
+    for value, expected in ((0.1, (0.1, 0.7)), (0.9, (0.3, 0.9)), (0.4, (0.3, 0.7))):
+        moved = described.with_values({"zones.room.infiltration.constant": value})
+        moved.to_yaml(tmp_path / f"{value}.yaml")
+        again = Building.from_yaml(tmp_path / f"{value}.yaml").parameter("zones.room.infiltration.constant")
+        assert (again.value, (again.low, again.high)) == (value, expected)

@@ -112,13 +112,18 @@ class Number(float):
         return self.quantity.default_range(self)
 
     def to_plain(self) -> Any:
-        """The number as in a file: a word, a plain number, or a mapping with range and source."""
+        """The number as in a file: a word, a plain number, or a mapping with range and source.
+
+        A file that states a range without its value is refused. The range of a value that has left it, as an
+        estimate of a tied factor may, is written as far as the value.
+        """
         word = self._word()
         notes: dict[str, Any] = {"value": word or _as_integer(self)}
         if self.quantity is not None:
             notes |= self.quantity.notes()
         if self.range is not None:
-            notes["range"] = [_as_integer(end) for end in self.range]
+            low, high = self.range
+            notes["range"] = [_as_integer(end) for end in (min(low, float(self)), max(high, float(self)))]
         if self.source is not None and not isinstance(self.source, Remark):
             notes["source"] = str(self.source)
         if self.assumed:
