@@ -16,7 +16,12 @@ if TYPE_CHECKING:
 #: Channels of the weather without which a cell cannot be simulated.
 _NEEDED: Final = ("air_temperature", "global_horizontal")
 #: Channels that are stated to be absent where the logger does not have them.
-_ABSENT: Final = ("wind_speed", "wind_direction", "dew_point")
+#: Weather that may be absent, and what is taken then.
+_ABSENT: Final = {
+    "wind_speed": "still air",
+    "wind_direction": "wind from north",
+    "dew_point": "70 % of humidity",
+}
 
 
 def cell_study(
@@ -78,7 +83,10 @@ def _climate(record: LoggerRecord, weather: Mapping[str, str]) -> Iterator[str]:
         channel for channel in _ABSENT if channel not in weather and not (channel == "dew_point" and humid)
     ]
     if absent:
-        yield "    # Not measured: still air, 70 % of humidity."
+        taken = [
+            _ABSENT[channel] for channel in absent if channel != "wind_direction" or "wind_speed" in weather
+        ]
+        yield f"    # Not measured: {', '.join(taken)}."
         yield f"    absent: [{', '.join(absent)}]"
 
 

@@ -248,6 +248,7 @@ def test_a_cell_gets_a_study_of_its_logger(tmp_path: Path, monkeypatch: pytest.M
             "T": table["air_temperature"],
             "G": table["global_horizontal"],
             "T_room": table["air_temperature"] + 1.0,
+            "v": table["wind_speed"],
         },
         index=table.index,
     )
@@ -259,7 +260,13 @@ def test_a_cell_gets_a_study_of_its_logger(tmp_path: Path, monkeypatch: pytest.M
         "--sensor T_room=room.air_temperature"
     )
     assert cli.main(shlex.split(words)) == 0
-    assert len((tmp_path / "cell" / "study.yaml").read_text().splitlines()) <= 35
+    text = (tmp_path / "cell" / "study.yaml").read_text()
+    assert len(text.splitlines()) <= 35
+    assert "# Not measured: still air, 70 % of humidity." in text
+    # What is said of the weather follows from what is measured.
+    assert cli.main(shlex.split(f"{words} --column wind_speed=v -o windy")) == 0
+    text = (tmp_path / "windy" / "study.yaml").read_text()
+    assert "# Not measured: wind from north, 70 % of humidity." in text
     study = mc.Study.from_yaml(tmp_path / "cell" / "study.yaml")
     assert [*study.plan.sensors] == ["T_room"]
     assert cli.main(shlex.split(words.replace("=T ", "=Tx ") + " -o other")) == 2
