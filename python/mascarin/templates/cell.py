@@ -62,6 +62,13 @@ def cell_study(
         for column in columns:
             record.require(column, option)
     building = building_of(room)
+    wind = [channel for channel in ("wind_speed", "wind_direction") if channel not in weather]
+    if building.vents and wind:
+        raise InputError(
+            f"--column: found no {', '.join(wind)}; expected both, because the wind drives air through "
+            f"{', '.join(f'vents.{name}' for name in building.vents)}, such as --column wind_speed=V "
+            "--column wind_direction=D. Or write --gap closed"
+        )
     for output in sensors.values():
         building.output(output)
     return (

@@ -239,7 +239,9 @@ def test_a_wall_with_a_logger_is_calibrated_as_written(
     assert fit.low[k] <= 0.033 <= fit.high[k]
 
 
-def test_a_cell_gets_a_study_of_its_logger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cell_gets_a_study_of_its_logger(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     climate = mc.Climate.shipped("tampa")
     table = climate.to_dataframe().iloc[: 24 * 8]
@@ -249,6 +251,7 @@ def test_a_cell_gets_a_study_of_its_logger(tmp_path: Path, monkeypatch: pytest.M
             "G": table["global_horizontal"],
             "T_room": table["air_temperature"] + 1.0,
             "v": table["wind_speed"],
+            "d": table["wind_direction"],
         },
         index=table.index,
     )
@@ -267,6 +270,12 @@ def test_a_cell_gets_a_study_of_its_logger(tmp_path: Path, monkeypatch: pytest.M
     assert cli.main(shlex.split(f"{words} --column wind_speed=v -o windy")) == 0
     text = (tmp_path / "windy" / "study.yaml").read_text()
     assert "# Not measured: wind from north, 70 % of humidity." in text
+    # The wind drives air through a ventilated gap; a study without it would be refused.
+    vented = f"{words} --gap ventilated -o vented"
+    assert cli.main(shlex.split(f"{vented} --column wind_speed=v")) == 2
+    assert "found no wind_direction; expected both" in capsys.readouterr().err
+    assert cli.main(shlex.split(f"{vented} --column wind_speed=v --column wind_direction=d")) == 0
+    assert cli.main(["validate", "vented/study.yaml"]) in (0, 1)
     study = mc.Study.from_yaml(tmp_path / "cell" / "study.yaml")
     assert [*study.plan.sensors] == ["T_room"]
     assert cli.main(shlex.split(words.replace("=T ", "=Tx ") + " -o other")) == 2
