@@ -195,6 +195,8 @@ def _blind(draw: Draw, schedules: Schedules) -> Json:
         blind["cover"] = draw.number(0.0, 1.0)
     if draw.chance(0.3):
         blind["radiation"] = draw.number(0.0, 600.0)
+    if blind["position"] == "inside" and through > 0.0:
+        blind["to_air"] = four(1.0 - through)
     return blind | schedules.maybe("on", 0.4)
 
 

@@ -96,9 +96,9 @@ def overcast(diffuse: float, **columns: Any) -> Climate:
     )
 
 
-def day(building: Building, **columns: Any) -> Results:
+def day(building: Building, step: str = "1h", **columns: Any) -> Results:
     names = [one.name for one in building.outputs()]
-    return simulate(building, overcast(200.0, **columns), step="1h", outputs=names)
+    return simulate(building, overcast(200.0, **columns), step=step, outputs=names)
 
 
 def noon(results: Results, name: str) -> float:
@@ -142,6 +142,56 @@ def test_the_sun_behind_a_blind(position: str, part: float) -> None:
         assert noon(open_blind, name) == pytest.approx(noon(bare, name), rel=1e-12)
 
 
+def test_the_air_behind_an_inner_blind_carries_heat_into_the_room() -> None:
+    """Of what the blind absorbs, the part (1 - to_air) divides between the room and outdoors, the rest stays.
+
+    The blind is 2.4 W/(m2 K) from the room, and through its resistance, the pane and 13 W/(m2 K) from
+    outdoors.
+    """
+    outwards = 1 / (0.25 + 1e-3 + 0.004 + 1 / 13)
+    lost = outwards / (outwards + 2.4)
+    absorbed = 0.6 * 0.3 / (1 - 0.5 * 0.25)
+    loads, incident = {}, 0.0
+    for part in (0.0, 0.4, 1.0):
+        building = room(SCREEN | {"position": "inside", "to_air": part})
+        # In steps of 15 min the panes are in their steady state at noon.
+        results = day(building.replace({"site.diffuse": "isotropic"}), step="15min", closed=1.0)
+        loads[part], incident = noon(results, "room.net_load"), noon(results, "pane.incident_solar")
+        assert results.energy.closure < 1e-12
+    for part in (0.4, 1.0):
+        expected = AREA * incident * absorbed * lost * part
+        assert loads[0.0] - loads[part] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("u_value", [1.1, 2.8, 5.8])
+def test_the_share_of_the_air_behind_a_blind_by_the_standard(u_value: float) -> None:
+    """The upper end of the range loses what EN 13363-1 loses with 0.08 m2 K/W: U/(U + 30)."""
+    blind = Blind(position="inside", transmittance=0.1, reflectance=0.6, resistance=0.08)
+    assert blind.to_air is not None
+    outwards = 1 / (0.08 + 1 / u_value - 1 / 7.7)
+    lost = (1 - blind.to_air.plausible[1]) * outwards / (outwards + 7.7)
+    assert lost == pytest.approx(u_value / (u_value + 30), abs=0.012)
+
+
+@pytest.mark.parametrize(("outdoors", "speed"), [(20.0, 0.2), (20.0, 0.3), (4.5, 0.2), (4.5, 0.3)])
+def test_the_share_of_the_air_behind_a_blind_by_its_flow(outdoors: float, speed: float) -> None:
+    """ISO 15099 for a gap of 50 mm, 1.5 m high, behind a single pane or two: the default is about it.
+
+    Films of the gap 2 h + 4 v with h = 1.2 W/(m2 K); radiation 4 W/(m2 K) to the glass and 4.5 to the room,
+    3.1 W/(m2 K) from blind to room.
+    """
+    film = 2 * 1.2 + 4 * speed
+    flow = 1200 * speed * 0.05 / 1.5  # [W/(m2 K)], of the window
+    carried = flow * (1 - np.exp(-2 * film / flow))  # from the mean of both faces to the room
+    gap = 1 / (1 / carried - 1 / (2 * film))
+    between, to_room = film**2 / (2 * film + gap) + 4, film * gap / (2 * film + gap)
+    balance = np.array([[between + to_room + 7.6, -between], [-between, between + to_room + outdoors]])
+    lost = outdoors * np.linalg.solve(balance, [1.0, 0.0])[1]
+    closed = 1 / (0.08 + 1 / outdoors)
+    share = 1 - lost / (closed / (closed + 7.6))
+    assert 0.35 < share < 0.6
+
+
 def test_a_blind_that_radiation_closes() -> None:
     control = SCREEN | {"position": "outside", "radiation": 30.0}
     results = day(room(control), closed=1.0)
@@ -160,13 +210,15 @@ def test_a_measured_irradiance_of_a_window() -> None:
     assert noon(measured, "pane.transmitted_solar") == pytest.approx(factor * transmitted, rel=1e-6)
 
 
-def test_slopes_agree_with_differences() -> None:
+@pytest.mark.parametrize("position", ["outside", "inside"])
+def test_slopes_agree_with_differences(position: str) -> None:
     building = room(
-        SCREEN | {"position": "outside", "cover": 0.9}, held={"column": "T_room", "radiative": 0.3}
+        SCREEN | {"position": position, "cover": 0.9}, held={"column": "T_room", "radiative": 0.3}
     )
     climate = overcast(300.0, closed=0.6, T_room=20 + np.sin(np.arange(49) / 5))
     simulation = Simulation(building, climate, step="1h", outputs=["room.net_load"])
     paths = [f"windows.pane.blind.{key}" for key in ("transmittance", "reflectance", "resistance", "cover")]
+    paths += ["windows.pane.blind.to_air"] if position == "inside" else []
     paths += ["zones.room.heating.radiative", "surfaces.wall_room.inside.convection.coefficient"]
     slopes = simulation.gradient(Mean("room.net_load")).slopes
     for path in paths:
@@ -187,6 +239,7 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
         {"position": "outside", "transmittance": 0, "reflectance": 0.5},
         "'shutter_resistance' and 'air_permeability'",
     ),
+    "air of outdoors": (SCREEN | {"position": "outside", "to_air": 0.5}, "a blind in the room only"),
     "slats": (SCREEN | {"position": "outside", "slats": 0.1}, "at the angle in use"),
 }
 

@@ -161,7 +161,7 @@ walk!(MeltingCurve by variant {
 });
 
 walk!(Construction { layers, glazing, blind } plain { name });
-walk!(Blind { transmittance, reflectance, resistance, cover, radiation } plain { inside, schedule });
+walk!(Blind { transmittance, reflectance, resistance, cover, radiation, to_air } plain { inside, schedule });
 walk!(Layer { thickness } plain { name, material, nodes });
 walk!(Glazing by variant {
     Panes { panes, gaps, angular } plain {},

@@ -9,6 +9,9 @@
 //! A blind has no heat capacity. It is the outermost or innermost node of the window, and a resistance connects it to the glass:
 //! that of the blind and of the air behind it (the additional resistance of EN ISO 10077-1), in proportion to the part that is
 //! covered.
+//!
+//! The air behind an inner blind is that of the room: it rises there and carries a part of what the blind absorbs away from the
+//! glass (`to_air`). This part goes to the air of the room at once, the rest to the node of the blind.
 
 use crate::input::description;
 use crate::input::forcing::{Schedule, scheduled};
@@ -33,6 +36,8 @@ pub struct Blind<S> {
     schedule: Schedule,
     /// Irradiance of the window above which it is closed [W/m2]; none: it follows its schedule alone.
     radiation: Option<S>,
+    /// Part of what an inner blind absorbs that the air behind it carries into the room [-].
+    pub(crate) to_air: Option<S>,
 }
 
 impl<S: Real> Blind<S> {
@@ -45,6 +50,7 @@ impl<S: Real> Blind<S> {
             cover: values.get(blind.cover),
             schedule: Schedule::new(blind.schedule),
             radiation: blind.radiation.map(|id| values.get(id)),
+            to_air: blind.to_air.map(|id| values.get(id)),
         }
     }
 
@@ -118,6 +124,7 @@ mod tests {
             cover: 1.0,
             schedule: Schedule::new(None),
             radiation: Some(150.0),
+            to_air: None,
         }
     }
 

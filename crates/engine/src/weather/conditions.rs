@@ -250,7 +250,7 @@ impl<S: Real> Conditions<S> {
                 self.sun.pass(plan, coefficients);
             }
             self.sun.distribute(plan, coefficients, &mut self.surfaces);
-            self.sun.absorb_in_panes(plan, &mut self.surfaces);
+            self.sun.absorb_in_panes(plan, coefficients, &mut self.surfaces);
         }
     }
 

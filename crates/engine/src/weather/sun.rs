@@ -64,7 +64,7 @@ pub struct SolarConditions<S> {
     entering: Vec<S>,
     /// Per zone, where there are such passages: what enters from other zones less what leaves to them [W].
     pub(crate) exchanged: Vec<S>,
-    /// Per zone, where some give a part of the sun to their air: that part [W].
+    /// Per zone, where some give a part of the sun, or of what blinds absorb, to their air: that part [W].
     pub(crate) to_air: Vec<S>,
 }
 
@@ -452,9 +452,15 @@ impl<S: Real> SolarConditions<S> {
         (self.zones[z].lost, self.zones[z].in_glass) = (lost, in_glass);
     }
 
-    /// Assigns the heat absorbed in panes to the cells and surfaces where it acts.
+    /// Assigns the heat absorbed in panes to the cells and surfaces where it acts, and that of inner blinds to the air behind
+    /// them.
     #[inline(always)]
-    pub(crate) fn absorb_in_panes(&mut self, plan: &Plan, surfaces: &mut BySide<SurfaceConditions<S>>) {
+    pub(crate) fn absorb_in_panes(
+        &mut self,
+        plan: &Plan,
+        coefficients: &Coefficients<S>,
+        surfaces: &mut BySide<SurfaceConditions<S>>,
+    ) {
         for (at, &w) in self.windows.iter_mut().zip(&plan.windows) {
             let Some(glass) = &plan.walls[w].glass else { continue };
             let mut both = [S::zero(); 2];
@@ -475,13 +481,24 @@ impl<S: Real> SolarConditions<S> {
             }
             surfaces[SideId::outside(w)].solar = both[0];
             surfaces[SideId::inside(w)].solar += both[1];
+            let wall = &coefficients.walls[w];
+            let carried = wall.glass.as_ref().and_then(|glass| glass.blind.as_ref()?.1.to_air);
+            if let (Some(part), Some(&heat), SideRole::Zone { zone, .. }) =
+                (carried, at.panes.last(), plan.surfaces[SideId::inside(w)].role)
+            {
+                surfaces[SideId::inside(w)].solar += -(part * heat);
+                self.to_air[zone] += wall.area * part * heat;
+            }
         }
     }
 }
 
-/// Whether a zone gives a part of the sun to its air.
+/// Whether the air of a zone gets a part of the sun, or of what a blind absorbs.
 fn to_air(plan: &Plan) -> bool {
+    let mut blinds =
+        plan.description.constructions.iter().filter_map(|construction| construction.blind.as_ref());
     plan.description.zones.iter().any(|zone| zone.solar_to_air.is_some())
+        || blinds.any(|blind| blind.to_air.is_some())
 }
 
 /// Part of a window that its blind covers; none without a blind.

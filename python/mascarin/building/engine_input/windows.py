@@ -147,8 +147,9 @@ def describe_blinded_glazing(
     blind: Json = {"inside": window.blind is not None and window.blind.position == "inside"}
     blind |= {key: ids(key) for key in ("transmittance", "reflectance", "resistance", "cover")}
     blind |= schedule_of(window.blind, positions)
-    if window.blind is not None and window.blind.radiation is not None:
-        blind["radiation"] = ids("radiation")
+    if window.blind is not None:
+        optional = {"radiation": window.blind.radiation, "to_air": window.blind.to_air}
+        blind |= {key: ids(key) for key, number in optional.items() if number is not None}
     return written | {"blind": blind}
 
 

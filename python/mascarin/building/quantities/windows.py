@@ -192,6 +192,15 @@ BlindCover = Annotated[
     Number,
     Quantity("-", "Part of the glass that the closed blind covers", Within(0.05, "gaps at edges"), FRACTION),
 ]
+BlindToAir = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Part of the sun absorbed by a blind in the room that the air behind it carries into the room",
+        Within(0.15, "gaps at the edges, size of the gap"),
+        FRACTION,
+    ),
+]
 BlindRadiation = Annotated[
     Number,
     Quantity(

@@ -122,6 +122,9 @@ pub struct Blind {
     /// Irradiance of the window above which it is closed [W/m2]; none: it follows its schedule alone.
     #[serde(default)]
     pub radiation: Option<ParamId>,
+    /// Part of the sun that an inner blind absorbs which the air behind it carries into the room [-]; none: no part.
+    #[serde(default)]
+    pub to_air: Option<ParamId>,
 }
 
 /// Optics of a whole unit over the angle of incidence, for sun from outside.

@@ -15,6 +15,13 @@ from mascarin.building.base.part import Part
 NET_RADIATION = "EN 13363-2:2005 (radiation between a blind and the glass)"
 SHUTTER = "EN ISO 10077-1:2017, annex (additional resistance of closed shutters by the classes of EN 13125)"
 
+VENTILATED = (
+    "assumed: 0.4 to 0.55 by ISO 15099 for air at 0.2 to 0.3 m/s in a gap of 50 mm, 0.7 by EN 13363-1:2003"
+)
+#: See `VENTILATED`, and the range that it leaves. [-]
+_TO_AIR: Final = 0.5
+_TO_AIR_RANGE: Final = (0.3, 0.7)
+
 #: Additional resistance ``a + b R`` of a closed shutter of the resistance R, by its air permeability: a
 #: [m2 K/W] and b [-].
 _BY_PERMEABILITY: Final = {
@@ -74,6 +81,7 @@ class Blind(Part):
     )
     emissivity: q.Emissivity = Number(0.9, source="EN 13363-2:2005: not metallic", assumed=True)
     cover: q.BlindCover = Number(1.0, source=Remark("not given: all of the glass"), assumed=True)
+    to_air: q.BlindToAir | None = None
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction that is closed; none: always closed"
     )
@@ -88,6 +96,22 @@ class Blind(Part):
                 "a sum of at most 1: the rest is absorbed",
                 "Correct one of them.",
             )
+        return self
+
+    @model_validator(mode="after")
+    def _carrying(self) -> Blind:
+        if self.position == "outside":
+            if self.to_air is not None:
+                raise problem(
+                    "'to_air' of a blind outside, behind which the air is that of outdoors",
+                    "'to_air' of a blind in the room only",
+                    "Leave it out, or write 'position: inside'.",
+                )
+            return self
+        if self.to_air is None:
+            quantity = quantity_of(type(self).model_fields["to_air"])
+            number = Number(_TO_AIR, range=_TO_AIR_RANGE, source=VENTILATED, assumed=True, quantity=quantity)
+            self._fill(to_air=number)
         return self
 
     @model_validator(mode="after")
