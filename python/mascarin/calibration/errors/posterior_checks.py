@@ -58,8 +58,8 @@ class Contradiction:
     Attributes
     ----------
     kind : str
-        ``offset``, ``day``, ``autocorrelation``, ``coverage``, ``bound``, ``material``, ``period`` or
-        ``statement``.
+        ``offset``, ``day``, ``autocorrelation``, ``coverage``, ``bound``, ``material``, ``period``, ``fit``
+        or ``statement``.
     subject : str
         Which sensor, day or parameter.
     text : str
@@ -181,6 +181,45 @@ def of_errors(
         Names of the days.
     """
     return [*_offsets(joint, stated), *_days(joint, days), *_order(joint, sensors)]
+
+
+def of_fit(
+    described: Mapping[str, float], calibrated: Mapping[str, float], stated: Mapping[str, float]
+) -> list[Contradiction]:
+    """Check whether the calibrated model follows the data of its identification better than as described.
+
+    Where it does not, the errors of model and sensors explain what the parameters should: the curves of the
+    calibrated model are no better, whatever the bands contain.
+
+    Parameters
+    ----------
+    described, calibrated : mapping of str to float
+        Root mean square error in the identification by sensor. [unit]
+    stated : mapping of str to float
+        Standard uncertainty of each sensor, by which they are weighed. [unit]
+
+    Examples
+    --------
+    >>> found = of_fit({"room": 0.6, "gap": 6.7}, {"room": 0.7, "gap": 6.8}, {"room": 0.25, "gap": 0.25})
+    >>> found[0].text.partition(":")[0]
+    'the calibrated model is farther from the data of its identification than the model as described'
+    >>> of_fit({"room": 0.6, "gap": 6.7}, {"room": 0.7, "gap": 3.0}, {"room": 0.25, "gap": 0.25})
+    []
+    """
+    names = [name for name in described if stated.get(name, 0.0) > 0.0 and name in calibrated]
+    before, after = (
+        sum((errors[name] / stated[name]) ** 2 for name in names) for errors in (described, calibrated)
+    )
+    if not after > before:
+        return []
+    worst = max(names, key=lambda name: (calibrated[name] - described[name]) / stated[name])
+    text = (
+        "the calibrated model is farther from the data of its identification than the model as described: "
+        f"{math.sqrt(after / before):.2f} times, most in {worst} (root mean square {described[worst]:.2g} as "
+        f"described, {calibrated[worst]:.2g} calibrated). Errors of model and sensors explain what the "
+        "parameters do not: look for what the model lacks, or state a smaller discrepancy.limit"
+    )
+    return [Contradiction("fit", worst, text)]
 
 
 def _offsets(joint: JointPosterior, stated: Mapping[str, float]) -> list[Contradiction]:

@@ -13,12 +13,14 @@ from mascarin.calibration.errors.posterior_checks import (
     Contradiction,
     of_errors,
     of_estimates,
+    of_fit,
     widening,
     with_wider_intervals,
 )
 from mascarin.calibration.errors.stated_errors import beside_zero, counted_as_scatter
 from mascarin.study.context.error_rule import all_scatter, reason_of
 from mascarin.study.steps.error_model import local_hours, scatter_of, sensor_errors, stated_sizes
+from mascarin.study.steps.model_runs import nominal
 from mascarin.study.steps.prediction_intervals import coverage_of
 
 if TYPE_CHECKING:
@@ -64,6 +66,7 @@ def contradictions(
         joint, names = found.forms[0].joint, [sensor.name for sensor in fit.problem.sensors]
         all_found += of_errors(joint, names, stated_sizes(study), _days(study))
     all_found += of_estimates(fit.problem.parameters, fit.x, _reasons(study, fit))
+    all_found += _fit(study, run, fit)
     all_found += _periods(study, intervals)
     return [*all_found, *statements(study)]
 
@@ -118,6 +121,20 @@ def with_doubt(
 def _misses(study: StudyContext, run: ModelRun) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     observation = study.observation
     return observation.simulated(run.results.index, run.results.records) - observation.measured
+
+
+def _fit(study: StudyContext, run: ModelRun, fit: Calibration) -> list[Contradiction]:
+    """Whether the calibration improved what it was made with."""
+    stated = {
+        sensor.name: math.sqrt(float(np.mean(sensor.sigma[sensor.mask] ** 2)))
+        for sensor in fit.problem.sensors
+        if sensor.name in run.scores and sensor.mask.any()
+    }
+    described, calibrated = (
+        {name: scores[name]["identification"].rmse for name in stated}
+        for scores in (nominal(study).scores, run.scores)
+    )
+    return of_fit(described, calibrated, stated)
 
 
 def _coverage(study: StudyContext, run: ModelRun, intervals: PredictionIntervals) -> Iterator[Contradiction]:
