@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
+from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.optimization.base import Observer, Optimizer, Steps
 from mascarin.optimization.mesh import SufficientDecrease, decimal_rounding, uniform_starts

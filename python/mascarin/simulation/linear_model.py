@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from mascarin import _engine
 from mascarin._io import memory
 from mascarin._io.durations import seconds_of
+from mascarin.dataclass_methods import dataclass
 from mascarin.engine_errors import translated
 
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, TypeVar, get_args
 
@@ -15,9 +14,10 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 
 from mascarin._io import display
-from mascarin.building.base.docstrings import documented, signature_of
+from mascarin.building.base.docstrings import Documented, signature_of
 from mascarin.building.base.error_texts import explained
 from mascarin.building.base.fixed_mapping import fixed
+from mascarin.building.base.nested_schema import PartJsonSchema, built, schema_of
 from mascarin.building.base.number import (
     CHECK_SIGN,
     Number,
@@ -28,6 +28,7 @@ from mascarin.building.base.number import (
     quantity_of,
     shown,
 )
+from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -99,7 +100,23 @@ class Part(BaseModel, metaclass=PartType):
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Give the class a docstring made from its fields."""
-        cls.__doc__ = documented(cls.__doc__ or "", cls.model_fields)
+        cls.__doc__ = Documented(cls.__doc__ or "")  # type: ignore[assignment]
+
+    @classmethod
+    def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
+        """Build the validator of this class; those of the classes inside of it are built when they occur."""
+        return built(cls, _parent_namespace_depth=_parent_namespace_depth + 2, **options)
+
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return schema_of(cls, source, handler)
+
+    @classmethod
+    def model_json_schema(cls, **options: Any) -> dict[str, Any]:
+        """JSON Schema, with all parts that may be inside of this one."""
+        return super().model_json_schema(**{"schema_generator": PartJsonSchema, **options})
 
     def to_dict(self) -> dict[str, Any]:
         """Content of a YAML file: mappings, lists, texts and numbers.

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, Final
 
 from mascarin.building.base.error_texts import KeyPath, Line
+from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 EXTENDS: Final = "extends"

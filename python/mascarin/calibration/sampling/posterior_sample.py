@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -19,6 +18,7 @@ from mascarin.calibration.sampling.convergence import (
     r_hat,
     tail_size,
 )
+from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     import pandas as pd

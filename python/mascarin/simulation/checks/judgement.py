@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
 from mascarin._io.sealed.own_files import json_of
+from mascarin.dataclass_methods import dataclass
 from mascarin.simulation.checks.energy import balance_warnings
 from mascarin.simulation.checks.step_check import STEPS
 from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind

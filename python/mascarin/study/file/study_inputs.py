@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
+from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.study.file.description import StudyFile
 from mascarin.study.file.locations import Places

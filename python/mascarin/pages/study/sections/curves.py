@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
 from mascarin._io.units import bracketed, shown
+from mascarin.dataclass_methods import dataclass
 from mascarin.figures import text
 from mascarin.figures.comparison import Compared, errors, errors_together, series, together
 from mascarin.pages.study.data.labels import (
