@@ -10,11 +10,14 @@ from __future__ import annotations
 import dataclasses
 import sys
 from dataclasses import MISSING, Field, FrozenInstanceError
+from functools import cache
+from operator import attrgetter
 from reprlib import recursive_repr
 from types import MethodType
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from dataclasses import dataclass as dataclass
 else:
 
@@ -22,7 +25,7 @@ else:
         """As `dataclasses.dataclass`, whose words it takes; type checkers read that one.
 
         Fields, comparison, hash and text are those of the standard library, and so are `fields`, `replace`
-        and `asdict`. Classes that are not frozen, or have slots, are made by it altogether.
+        and `asdict`. Classes that are not frozen are made by it altogether.
 
         Parameters
         ----------
@@ -52,18 +55,19 @@ else:
         >>> Layer(0.2) == Layer(0.2, "plaster")
         False
         """
-        if slots or not frozen:
-            return dataclasses.dataclass(cls, frozen=frozen, eq=eq, repr=repr, kw_only=kw_only, slots=slots)
+        if not frozen:
+            return dataclasses.dataclass(cls, eq=eq, repr=repr, kw_only=kw_only, slots=slots)
 
         def decorate(cls):
             given = {name for name, value in vars(cls).items() if value is not None}
-            dataclasses.dataclass(cls, init=False, repr=False, eq=False, kw_only=kw_only)
+            cls = dataclasses.dataclass(cls, init=False, repr=False, eq=False, kw_only=kw_only, slots=slots)
             methods = {"__init__": _Init(cls)}
             methods |= {"__repr__": _text} if repr else {}
             methods |= {"__eq__": _equal, "__hash__": _hash} if eq else {}
+            methods |= {"__getstate__": _values, "__setstate__": _set_values} if slots else {}
             for name in methods.keys() - given:
                 setattr(cls, name, methods[name])
-            cls.__setattr__ = cls.__delattr__ = _refuse
+            cls.__setattr__, cls.__delattr__ = _refuse_change, _refuse_removal
             return cls
 
         return decorate
@@ -92,7 +96,7 @@ def _init_of(cls: type) -> Any:
     """Compile `__init__` of a dataclass, with the names of its fields as those of its parameters."""
     fields = dataclasses.fields(cls)
     names: dict[str, Any] = {"_set": object.__setattr__, "_factory": _FACTORY}
-    parameters, by_name, body = ["self"], [], []
+    parameters, by_name, body = ["self"], list[str](), list[str]()
     for field in fields:
         names[f"_default_{field.name}"] = field.default
         names[f"_make_{field.name}"] = field.default_factory
@@ -139,8 +143,12 @@ def _value_of(field: Field[Any]) -> str | None:
     return f"{made} if {field.name} is _factory else {field.name}" if field.init else made
 
 
-def _refuse(self: object, name: str, *_: object) -> NoReturn:
+def _refuse_change(self: object, name: str, value: object) -> NoReturn:
     raise FrozenInstanceError(f"cannot assign to field {name!r}")
+
+
+def _refuse_removal(self: object, name: str) -> NoReturn:
+    raise FrozenInstanceError(f"cannot delete field {name!r}")
 
 
 @recursive_repr()
@@ -149,13 +157,29 @@ def _text(self: Any) -> str:
     return f"{type(self).__qualname__}({', '.join(shown)})"
 
 
+@cache
+def _reader(cls: type, *, hashed: bool) -> Callable[[Any], tuple[Any, ...]]:
+    """Function that reads the fields of an object that are compared, or that its hash is made of."""
+    fields = dataclasses.fields(cls)
+    names = [f.name for f in fields if (f.hash if hashed and f.hash is not None else f.compare)]
+    return attrgetter(*names) if len(names) > 1 else lambda item: tuple(getattr(item, name) for name in names)
+
+
 def _equal(self: Any, other: object) -> bool:
     if other.__class__ is not self.__class__:
         return NotImplemented
-    names = [f.name for f in dataclasses.fields(self) if f.compare]
-    return [getattr(self, name) for name in names] == [getattr(other, name) for name in names]
+    read = _reader(type(self), hashed=False)
+    return bool(read(self) == read(other))
 
 
 def _hash(self: Any) -> int:
-    names = (f.name for f in dataclasses.fields(self) if (f.compare if f.hash is None else f.hash))
-    return hash(tuple(getattr(self, name) for name in names))
+    return hash(_reader(type(self), hashed=True)(self))
+
+
+def _values(self: Any) -> list[Any]:
+    return [getattr(self, f.name) for f in dataclasses.fields(self)]
+
+
+def _set_values(self: Any, values: list[Any]) -> None:
+    for field, value in zip(dataclasses.fields(self), values, strict=True):
+        object.__setattr__(self, field.name, value)

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, Final, get_args
 
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
-from pydantic_core import core_schema
+from pydantic_core import PydanticSerializationUnexpectedValue, core_schema
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler
-    from pydantic.json_schema import CoreSchemaOrField, JsonSchemaValue
+    from pydantic.json_schema import JsonSchemaValue
 
 #: The class whose own validator is about to be built.
 _BUILT: Final[ContextVar[type[BaseModel] | None]] = ContextVar("built", default=None)
@@ -61,14 +61,17 @@ def schema_of(part: type[BaseModel], source: Any, handler: GetCoreSchemaHandler)
     inner = core_schema.typed_dict_schema({
         name: core_schema.typed_dict_field(field) for name, field in fields.items()
     })  # fmt: skip
-    # Only a union reads the inner schema, for the kind; a part is written by its own class.
+    call = Call(part)
+    # Only a union reads the inner schema, for the kind.
     return core_schema.no_info_wrap_validator_function(
-        Call(part), inner, serialization=core_schema.simple_ser_schema("any")
+        call,
+        inner,
+        serialization=core_schema.plain_serializer_function_ser_schema(call.serialized, info_arg=True),
     )
 
 
 class Call:
-    """Validation of a part by the validator of its class.
+    """Validation of a part by the validator of its class, and its serialization.
 
     Parameters
     ----------
@@ -83,11 +86,27 @@ class Call:
         """The part that is described by a value."""
         return self.part.__pydantic_validator__.validate_python(value)
 
+    def serialized(self, value: Any, info: core_schema.SerializationInfo) -> Any:
+        """A part as its own class writes it."""
+        if not isinstance(value, self.part):
+            raise PydanticSerializationUnexpectedValue  # a union tries another class
+        return value.__pydantic_serializer__.to_python(
+            value,
+            mode=info.mode,
+            include=info.include,
+            exclude=info.exclude,
+            by_alias=info.by_alias,
+            exclude_unset=info.exclude_unset,
+            exclude_defaults=info.exclude_defaults,
+            exclude_none=info.exclude_none,
+            round_trip=info.round_trip,
+        )
+
 
 class PartJsonSchema(GenerateJsonSchema):
     """JSON Schema with all parts inside of a part."""
 
-    def generate_inner(self, schema: CoreSchemaOrField) -> JsonSchemaValue:
+    def generate_inner(self, schema: Any) -> JsonSchemaValue:
         """The class of a part in place of a call."""
         function = schema.get("function")
         call = function.get("function") if isinstance(function, dict) else None

@@ -5,7 +5,9 @@ Long because everything that all parts share, from their errors to how they are 
 
 from __future__ import annotations
 
+import contextlib
 import math
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, TypeVar, get_args
@@ -50,6 +52,16 @@ _ONE_LINE = 100  # characters
 
 class PartType(ModelMetaclass):
     """Type of the classes of parts: completion of a class leaves out the names of pydantic as well."""
+
+    def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **options: Any) -> Any:
+        """Make a class; the types of its fields, which are texts, are compiled all at once and not singly."""
+        texts = namespace.get("__annotations__", {})
+        if texts and all(isinstance(text, str) for text in texts.values()):
+            # Names of a function are known to pydantic alone.
+            with contextlib.suppress(NameError):
+                types = eval(f"({', '.join(texts.values())},)", vars(sys.modules[namespace["__module__"]]))  # noqa: S307
+                namespace["__annotations__"] = dict(zip(texts, types, strict=True))
+        return super().__new__(mcs, name, bases, namespace, **options)
 
     def __dir__(self) -> list[str]:
         """Fields and methods, without those of pydantic."""
@@ -114,9 +126,10 @@ class Part(BaseModel, metaclass=PartType):
         return schema_of(cls, source, handler)
 
     @classmethod
-    def model_json_schema(cls, **options: Any) -> dict[str, Any]:
+    def model_json_schema(cls, *words: Any, **options: Any) -> dict[str, Any]:
         """JSON Schema, with all parts that may be inside of this one."""
-        return super().model_json_schema(**{"schema_generator": PartJsonSchema, **options})
+        usual = {} if len(words) > 2 else {"schema_generator": PartJsonSchema}  # it is the third word
+        return super().model_json_schema(*words, **usual | options)
 
     def to_dict(self) -> dict[str, Any]:
         """Content of a YAML file: mappings, lists, texts and numbers.
