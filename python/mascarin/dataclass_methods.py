@@ -165,15 +165,17 @@ def _reader(cls: type, *, hashed: bool) -> Callable[[Any], tuple[Any, ...]]:
     return attrgetter(*names) if len(names) > 1 else lambda item: tuple(getattr(item, name) for name in names)
 
 
-def _equal(self: Any, other: object) -> bool:
+def _equal(self: Any, other: object) -> Any:
     if other.__class__ is not self.__class__:
         return NotImplemented
-    read = _reader(type(self), hashed=False)
-    return bool(read(self) == read(other))
+    kind: Any = type(self)
+    read = _reader(kind, hashed=False)
+    return read(self) == read(other)
 
 
 def _hash(self: Any) -> int:
-    return hash(_reader(type(self), hashed=True)(self))
+    kind: Any = type(self)
+    return hash(_reader(kind, hashed=True)(self))
 
 
 def _values(self: Any) -> list[Any]:

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler
     from pydantic.json_schema import JsonSchemaValue
 
+#: What a serialization passes on to the parts inside of a part.
+_WORDS: Final = (
+    "mode", "include", "exclude", "by_alias", "exclude_unset", "exclude_defaults", "exclude_none",
+    "round_trip",
+)  # fmt: skip
 #: The class whose own validator is about to be built.
 _BUILT: Final[ContextVar[type[BaseModel] | None]] = ContextVar("built", default=None)
 
@@ -89,18 +94,9 @@ class Call:
     def serialized(self, value: Any, info: core_schema.SerializationInfo) -> Any:
         """A part as its own class writes it."""
         if not isinstance(value, self.part):
-            raise PydanticSerializationUnexpectedValue  # a union tries another class
-        return value.__pydantic_serializer__.to_python(
-            value,
-            mode=info.mode,
-            include=info.include,
-            exclude=info.exclude,
-            by_alias=info.by_alias,
-            exclude_unset=info.exclude_unset,
-            exclude_defaults=info.exclude_defaults,
-            exclude_none=info.exclude_none,
-            round_trip=info.round_trip,
-        )
+            raise PydanticSerializationUnexpectedValue(type(value).__name__)  # a union tries another class
+        words = {word: getattr(info, word) for word in _WORDS}
+        return value.__pydantic_serializer__.to_python(value, **words)
 
 
 class PartJsonSchema(GenerateJsonSchema):
