@@ -100,7 +100,7 @@ def _init_of(cls: type) -> Any:
     for field in fields:
         names[f"_default_{field.name}"] = field.default
         names[f"_make_{field.name}"] = field.default_factory
-        value = _value_of(field)
+        value = _value_of(field, slots="__slots__" in vars(cls))
         if value is not None:
             body.append(f"_set(self, {field.name!r}, {value})")
         if field.init:
@@ -135,11 +135,12 @@ def _default_of(field: Field[Any]) -> str:
     return "" if field.default_factory is MISSING else "=_factory"
 
 
-def _value_of(field: Field[Any]) -> str | None:
+def _value_of(field: Field[Any], *, slots: bool) -> str | None:
     """What a field is set to, as text; None: it keeps the value that the class has, or has none."""
     made = f"_make_{field.name}()"
     if field.default_factory is MISSING:
-        return field.name if field.init else None
+        by_class = f"_default_{field.name}" if slots and field.default is not MISSING else None
+        return field.name if field.init else by_class
     return f"{made} if {field.name} is _factory else {field.name}" if field.init else made
 
 

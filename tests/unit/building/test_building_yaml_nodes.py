@@ -112,7 +112,8 @@ def test_plain_words_need_no_ruamel(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     "word",
     ["true", "True", "TRUE", "tRUE", "False", "null", "Null", "nULL", "n", "y", "yes", "on", "nan", "inf",
-     "", "~", "15min", "15 min", "3d", "0d", "12:30:00Z", "1f", "1e5f", "2010-08-02", "2010-8-2", "2010-08-02 12:00", "2010-08-02t12:00:00z", "0x1F",
+     "", "~", "15min", "15 min", "3d", "0d", "12:30:00Z", "1f", "1e5f", "2010-08-02",
+     "2010-8-2", "2010-08-02 12:00", "2010-08-02t12:00:00z", "0x1F",
      "0o17", "0b1", "1z", ".inf", "-.INF", ".nan", "-x", "=", "-", "1,5", "1/h", "1_000",
      "1e5", "-1.e5", "1e", "1e+", "e5", "+1e5", "1_0e5", "1.5E-3", "0e0", "00e1"],
 )  # fmt: skip
