@@ -54,8 +54,8 @@ class PiecewiseProfile:
         inner = np.clip(position - row, 0.0, 1.0) * pieces
         node = np.minimum(inner.astype(np.int64), pieces - 1)
         weight = inner - node
-        nodes, left = self.nodes.ravel(), row * (pieces + 1) + node
-        return np.asarray((1.0 - weight) * nodes.take(left) + weight * nodes.take(left + 1))
+        nodes, before = self.nodes.ravel(), row * (pieces + 1) + node
+        return np.asarray((1.0 - weight) * nodes.take(before) + weight * nodes.take(before + 1))
 
     def means(self, edges: Array) -> Array:
         """Mean over each span between consecutive edges.

@@ -51,23 +51,6 @@ def documented(text: str, fields: Mapping[str, FieldInfo]) -> str:
     return "\n\n".join(piece for piece in (summary, section, sections) if piece)
 
 
-class Documented:
-    """The `__doc__` of a part, made when it is read.
-
-    Parameters
-    ----------
-    text : str
-        Docstring as it is in the code.
-    """
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-
-    def __get__(self, instance: object, owner: Any) -> str:
-        """The docstring with a section on the parameters."""
-        return documented(self._text, owner.model_fields)
-
-
 def summary_of(text: str) -> str:
     """Docstring without its sections."""
     section = re.search(r"^ *[A-Z][A-Za-z ]+\n *-{3,}$", text, re.MULTILINE)

@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 
 from mascarin._io import display
-from mascarin.building.base.docstrings import Documented, signature_of
+from mascarin.building.base.docstrings import documented, signature_of
 from mascarin.building.base.error_texts import explained
 from mascarin.building.base.fixed_mapping import fixed
 from mascarin.building.base.nested_schema import PartJsonSchema, built, schema_of
@@ -112,7 +112,7 @@ class Part(BaseModel, metaclass=PartType):
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Give the class a docstring made from its fields."""
-        cls.__doc__ = Documented(cls.__doc__ or "")  # type: ignore[assignment]
+        cls.__doc__ = documented(cls.__doc__ or "", cls.model_fields)
 
     @classmethod
     def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
