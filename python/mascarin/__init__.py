@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from mascarin.public_names import attached
+import lazy_loader
 
 __version__: Final = "0.1.0"
 
-__getattr__, __dir__, __all__ = attached(__name__, __file__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -15,7 +15,6 @@ PACKAGE = ROOT / "python" / "mascarin"
 ORDER = [
     {"dataclass_methods"},
     {"errors", "engine_errors", "linear_algebra", "physics", "progress", "_engine", "_io"},
-    {"public_names"},
     {"study_document"},
     {"figures"},
     {"tables"},

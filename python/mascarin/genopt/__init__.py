@@ -6,6 +6,6 @@ its own and must start quickly.
 
 from __future__ import annotations
 
-from mascarin.public_names import attached
+import lazy_loader
 
-__getattr__, __dir__, __all__ = attached(__name__, __file__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ruamel.yaml import YAML
+    from ruamel.yaml.error import MarkedYAMLError, YAMLError
     from ruamel.yaml.nodes import ScalarNode
 
 #: Line ends of YAML 1.1 that are letters in YAML 1.2, the byte order mark, the first letter of directives,
@@ -54,7 +55,7 @@ class Reader:
         return YAML(typ="safe", pure=True)
 
     @property
-    def faults(self) -> tuple[type[Exception], type[Exception]]:
+    def faults(self) -> tuple[type[MarkedYAMLError], type[YAMLError]]:
         """Errors with a place in the text, and all errors, of a text that is no YAML."""
         from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
