@@ -13,7 +13,6 @@ PACKAGE = ROOT / "python" / "mascarin"
 
 # From first to last (docs/architecture.md). Entries of one line may use each other, without circles.
 ORDER = [
-    {"dataclass_methods"},
     {"errors", "engine_errors", "linear_algebra", "physics", "progress", "_engine", "_io"},
     {"study_document"},
     {"figures"},

@@ -16,11 +16,10 @@ import contextlib
 import os
 import stat
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 DESCRIPTION: Final = "description"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final, Literal
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 SLAB: Final = "ISO 13370:2017, slab on ground"

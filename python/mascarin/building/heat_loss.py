@@ -8,7 +8,7 @@ Infiltration, with that of pressure tests, is taken at the same wind and a tempe
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from mascarin.building.checks.conductances import infiltration_rate, opaque_area, window_conductance
@@ -17,7 +17,6 @@ from mascarin.building.engine_input.ratings import window_ratings
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.materials.phases import phase
 from mascarin.building.parts.site_air import heat_capacity
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

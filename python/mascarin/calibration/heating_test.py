@@ -23,12 +23,12 @@ https://doi.org/10.1109/TAC.1978.1101743
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, SolverError
 
 Floats = NDArray[np.float64]

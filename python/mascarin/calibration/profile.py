@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -26,7 +27,6 @@ from numpy.typing import NDArray
 from mascarin.calibration.base.cost import Cost
 from mascarin.calibration.errors.joint_estimation import METHOD
 from mascarin.calibration.methods.least_squares import derivative, scale_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import calibration as figures
 

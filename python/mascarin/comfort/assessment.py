@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +15,6 @@ from mascarin.comfort.evaluation import Discomfort, Evaluation, Floats, discomfo
 from mascarin.comfort.heat_balance import dissatisfied
 from mascarin.comfort.settings import ComfortSettings
 from mascarin.comfort.surroundings import Surroundings
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     import pandas as pd

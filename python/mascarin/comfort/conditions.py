@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.physics import STANDARD_PRESSURE
 
 Floats = npt.NDArray[np.float64]

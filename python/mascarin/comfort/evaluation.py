@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from mascarin._io.limits import excess, shortfall
-from mascarin.dataclass_methods import dataclass
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

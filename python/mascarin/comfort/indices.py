@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
 from mascarin.comfort import adaptive, givoni, heat_balance
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Evaluation
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.physics import KELVIN
 

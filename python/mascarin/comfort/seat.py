@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
@@ -11,7 +12,6 @@ import numpy as np
 from mascarin.building.geometry import Polygon, open_edges, parents, plane_factor, solid_angle
 from mascarin.building.geometry.flat import inside
 from mascarin.building.parts.openings.window import emissivities as emissivities_of_glass
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.physics import KELVIN, STEFAN_BOLTZMANN
 

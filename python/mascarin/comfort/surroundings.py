@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import tzinfo
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,6 @@ import numpy as np
 
 from mascarin.comfort.adaptive import ASHRAE_WEIGHTS, EN_WEIGHTS, weighted_mean
 from mascarin.comfort.evaluation import Floats
-from mascarin.dataclass_methods import dataclass
 from mascarin.physics import STANDARD_PRESSURE, humidity_of_dew_point, humidity_ratio
 from mascarin.tables.arrays import Array
 from mascarin.tables.grid import values_in

@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.errors.day_blocks import DayGaussian
-from mascarin.dataclass_methods import dataclass
 from mascarin.diagnosis.error_covariance import ErrorCovariance, estimate_error_covariance
 from mascarin.diagnosis.hypotheses import Candidate, DiagnosisInput
 from mascarin.diagnosis.joint_causes import subsets_of

@@ -17,7 +17,7 @@ https://doi.org/10.1093/biomet/58.3.545
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -31,7 +31,6 @@ from mascarin.calibration.errors.discrepancy import (
     estimate_discrepancy,
     root_of,
 )
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 

@@ -15,6 +15,7 @@ Where no change makes the error smaller there, no parameter is named.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -22,7 +23,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from mascarin._io.limits import above, at_most
 from mascarin._io.numbers import beside_limit
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

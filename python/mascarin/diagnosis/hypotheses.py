@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.errors.discrepancy import DayData
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 

@@ -14,12 +14,11 @@ probability that a variable is included). https://doi.org/10.1080/01621459.1993.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.diagnosis.likelihood_ratio import Scores
 
 Floats = NDArray[np.float64]

@@ -28,7 +28,7 @@ https://doi.org/10.1017/CBO9780511802843
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -36,7 +36,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.errors.day_blocks import DayGaussian
-from mascarin.dataclass_methods import dataclass
 from mascarin.diagnosis.step_changes import Hypotheses
 
 Floats = NDArray[np.float64]

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.errors.day_blocks import DayGrid
-from mascarin.dataclass_methods import dataclass
 from mascarin.diagnosis.hypotheses import Candidate, What
 
 Floats = NDArray[np.float64]

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -24,7 +24,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid
-from mascarin.dataclass_methods import dataclass
 from mascarin.diagnosis.hypotheses import Candidate
 
 Floats = NDArray[np.float64]

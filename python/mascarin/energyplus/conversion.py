@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
 from typing import Final
@@ -10,7 +11,6 @@ from typing import Final
 import numpy as np
 
 from mascarin.building import Building
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
 from mascarin.energyplus.envelope.idf_surfaces import read_openings, read_surfaces
 from mascarin.energyplus.envelope.shades import describe_shades

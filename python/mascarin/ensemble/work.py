@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin import _engine
-from mascarin.dataclass_methods import dataclass
 from mascarin.ensemble.members import variant
 from mascarin.errors import InputError, MascarinError
 from mascarin.simulation.checks.step_check import member_errors

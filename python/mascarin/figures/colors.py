@@ -9,9 +9,8 @@ deuteranopia and tritanopia (Machado, Oliveira & Fernandes 2009, doi:10.1109/TVC
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
-
-from mascarin.dataclass_methods import dataclass
 
 PALETTE: Final = (
     "#0078b4", "#d25a00", "#00a55a", "#a578ff", "#a53c87", "#00784b", "#e16996", "#b43c0f",

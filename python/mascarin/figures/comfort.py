@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,6 @@ from matplotlib import dates
 from matplotlib.colors import Normalize, TwoSlopeNorm
 
 from mascarin._io.units import bracketed, shown
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures import colors
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ Each function draws plain arrays on axes that the caller gives.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures import colors
 
 if TYPE_CHECKING:

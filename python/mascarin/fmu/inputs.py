@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Final
 
@@ -11,7 +12,6 @@ import numpy as np
 from mascarin.building.base.time_series import ColumnCourse
 from mascarin.building.engine_input.series_users import courses
 from mascarin.building.soil.courses import SoilCourse
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.checks.flow_balance import require_balanced_flows
 from mascarin.simulation.preparation.prepare import limits_of_columns

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 from xml.etree import ElementTree as ET
 
 from mascarin import __version__
-from mascarin.dataclass_methods import dataclass
 from mascarin.fmu.units import base_unit
 from mascarin.fmu.variables import Variable
 

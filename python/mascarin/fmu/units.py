@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.physics import KELVIN
 
 _SIGNS: Final = re.compile(r"\s*([A-Za-z%]+|[0-9]+|[()/ ])")

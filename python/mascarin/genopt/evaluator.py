@@ -8,11 +8,10 @@ import shutil
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mascarin._io import identity
-from mascarin.dataclass_methods import dataclass
 from mascarin.genopt.algorithms.algorithm import Built
 from mascarin.genopt.files.project import Project
 from mascarin.genopt.program import RUN_PREFIX, Result, RunFailed

@@ -5,12 +5,11 @@ from __future__ import annotations
 import datetime as dt
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TextIO
 
 from mascarin import __version__
 from mascarin._io.identity import require_no_input
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import SolverError
 from mascarin.genopt.files.numbers import double_text
 from mascarin.genopt.files.project import Project

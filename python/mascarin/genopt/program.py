@@ -13,10 +13,10 @@ import tempfile
 import threading
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from mascarin._io.regular import require_regular
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt.command_line import place_word, split_command, variables
 from mascarin.genopt.extraction import count_of, decimal_comma, lines_of, word_after

@@ -9,12 +9,12 @@ import json
 import warnings
 from collections import defaultdict, deque
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
 from mascarin._io import atomic, identity
 from mascarin._io.sealed import own_files, own_records
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.genopt.files.project import Project
 

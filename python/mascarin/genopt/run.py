@@ -8,13 +8,12 @@ import os
 import re
 import shutil
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from mascarin import __version__
 from mascarin._io import atomic, identity
 from mascarin._io.locks import FolderLock, writing
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import records
 from mascarin.genopt.algorithms.algorithm import Built, build, chosen

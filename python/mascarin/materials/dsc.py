@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.materials.dsc_course import crystallisation_time
 from mascarin.materials.dsc_file import DscSettings, read

@@ -12,10 +12,10 @@ import csv
 import io
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 from mascarin._io.tables import csv_refused
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.materials.units import SIGN, UNITS, plain_unit
 

@@ -9,11 +9,11 @@ for the file as for the engine. The rest is melting.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.materials.dsc_course import Course
 from mascarin.materials.dsc_file import Scan

@@ -9,9 +9,8 @@ procedures for determining declared and design thermal values, table 3.
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import Final
-
-from mascarin.dataclass_methods import dataclass
 
 TOLERANCE: Final = 0.25
 """Part by which a number may be outside of the tabulated values of its kind. [-]"""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.physics import MeltingCurve
 
 if TYPE_CHECKING:

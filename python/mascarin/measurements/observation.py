@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.tables.times import epoch_seconds
 

@@ -13,9 +13,9 @@ JCGM 100:2008, Evaluation of measurement data: guide to the expression of uncert
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 COVERAGE_FACTOR: Final = 1.96

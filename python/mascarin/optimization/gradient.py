@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator
+from dataclasses import dataclass
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.optimization.base import CONVERGED, EXHAUSTED, Observer, Optimizer, Steps
 from mascarin.optimization.space import Evaluation, Point, Space
 from mascarin.optimization.transform import free_step, original, to_free

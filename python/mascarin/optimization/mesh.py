@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.optimization.random import Lcg48
 from mascarin.optimization.space import Evaluation, Point, Space
 

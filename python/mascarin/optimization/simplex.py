@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, SolverError
 from mascarin.optimization.base import CONVERGED, EXHAUSTED, Observer, Optimizer, Steps
 from mascarin.optimization.space import Evaluation, Point, Space

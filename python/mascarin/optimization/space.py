@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.optimization.base import Observer, Optimizer, Steps
 from mascarin.optimization.mesh import SufficientDecrease, decimal_rounding, uniform_starts

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from mascarin import _engine
 from mascarin._io import memory
 from mascarin._io.durations import seconds_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.engine_errors import translated
 
 if TYPE_CHECKING:

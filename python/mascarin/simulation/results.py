@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -12,7 +12,6 @@ import numpy as np
 from mascarin._io import display
 from mascarin._io.durations import seconds_of
 from mascarin._io.sealed.own_files import json_of, require
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.checks.energy import EnergyLedger
 from mascarin.simulation.checks.judgement import Judgement

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.simulation.checks.warning_kinds import RunWarning, kinds_of
 
 if TYPE_CHECKING:

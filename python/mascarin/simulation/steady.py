@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin._io.arguments import names_of
 from mascarin._io.durations import seconds_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import SolverError
 from mascarin.simulation.checks.energy import FLOWS
 from mascarin.simulation.simulation import Simulation

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import datetime, tzinfo
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.times import local_time, stamps_of

@@ -11,9 +11,10 @@ at the edges; where it would be too large, k is moved towards a constant. The me
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.arrays import Array, Flags
 
 _FINEST = 300.0

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.grid import Grid, frame_of
 

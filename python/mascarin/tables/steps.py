@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import tzinfo
 from typing import Final
 
 import numpy as np
 
 from mascarin._io import memory
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Halvings
 from mascarin.tables.timezones import seconds_at

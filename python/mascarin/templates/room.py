@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.templates.geometry import MARGIN, WALLS
 from mascarin.templates.short_texts import LayerText, WindowText, layers_of, size_of, window_of

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.templates.room_text import flow
 from mascarin.templates.short_texts import LayerText, layers_of, name_of, quoted

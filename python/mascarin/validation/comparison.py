@@ -24,14 +24,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mascarin._io import display
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

@@ -18,13 +18,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mascarin._io.limits import above, below
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]

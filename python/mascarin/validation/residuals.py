@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mascarin._io import display
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.validation.series import autocorrelation, correlate, fit_autoregression
 

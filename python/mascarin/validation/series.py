@@ -12,11 +12,11 @@ https://doi.org/10.2307/2983560
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -25,7 +25,6 @@ import numpy.typing as npt
 from mascarin._io.arguments import require_type
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.physics import KELVIN, dew_point, humidity_of_dew_point
 from mascarin.weather.climate import Climate

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.physics import humidity_of_dew_point
 
 if TYPE_CHECKING:

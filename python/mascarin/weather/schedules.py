@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime, timedelta, tzinfo
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Halvings
 from mascarin.tables.checks import require_range

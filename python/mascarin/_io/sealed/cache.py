@@ -12,7 +12,7 @@ import contextlib
 import hashlib
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final, TypeAlias
@@ -22,7 +22,6 @@ import numpy.typing as npt
 
 from mascarin import __version__
 from mascarin._io.sealed import own_files
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Array: TypeAlias = npt.NDArray[np.floating[Any]]

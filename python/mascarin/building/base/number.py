@@ -10,13 +10,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Final, get_args
 
 from pydantic_core import PydanticCustomError, core_schema
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:

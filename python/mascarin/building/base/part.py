@@ -5,10 +5,9 @@ Long because everything that all parts share, from their errors to how they are 
 
 from __future__ import annotations
 
-import contextlib
 import math
-import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, TypeVar, get_args
 
@@ -30,7 +29,6 @@ from mascarin.building.base.number import (
     quantity_of,
     shown,
 )
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -52,16 +50,6 @@ _ONE_LINE = 100  # characters
 
 class PartType(ModelMetaclass):
     """Type of the classes of parts: completion of a class leaves out the names of pydantic as well."""
-
-    def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **options: Any) -> Any:
-        """Make a class; the types of its fields, which are texts, are compiled all at once and not singly."""
-        texts = namespace.get("__annotations__", {})
-        if texts and all(isinstance(text, str) for text in texts.values()):
-            # Names of a function are known to pydantic alone.
-            with contextlib.suppress(NameError):
-                types = eval(f"({', '.join(texts.values())},)", vars(sys.modules[namespace["__module__"]]))  # noqa: S307
-                namespace["__annotations__"] = dict(zip(texts, types, strict=True))
-        return super().__new__(mcs, name, bases, namespace, **options)
 
     def __dir__(self) -> list[str]:
         """Fields and methods, without those of pydantic."""

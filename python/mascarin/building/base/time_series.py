@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
 from pydantic import AfterValidator
 
 from mascarin.building.base.number import problem
-from mascarin.dataclass_methods import dataclass
 
 CourseKind = Literal[
     "temperature",

@@ -8,12 +8,12 @@ Infiltration is taken at the same wind and a temperature difference of 10 K.
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from mascarin.building.checks.u_values import described_u_value, described_window_u_value
 from mascarin.building.parts.air.zone import TextInfiltration
 from mascarin.building.parts.site_air import heat_capacity
-from mascarin.dataclass_methods import dataclass
 from mascarin.physics import leakage_air_changes
 
 if TYPE_CHECKING:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from mascarin.building.parameters.unused_parameters import has_height, sides
 from mascarin.building.parts.envelope.formula_law import FormulaLaw, LawSide
 from mascarin.building.parts.openings.window import WindowInside
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     from mascarin.building.parts.description import Description

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -49,7 +49,6 @@ from mascarin.building.parts.levels import levels
 from mascarin.building.parts.materials.text_law import TextSky, numbers_of
 from mascarin.building.parts.self_shading import obstructions
 from mascarin.building.parts.site import CloudFactor, CloudLayer, Site
-from mascarin.dataclass_methods import dataclass
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mascarin.building.base.leaves import leaves
@@ -18,7 +19,6 @@ from mascarin.building.parts.materials.formula_curve import FormulaCurve
 from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance
 from mascarin.building.parts.materials.phase_change import Law, TanhLaw, TriangleLaw
 from mascarin.building.parts.materials.phases import Phases, phase
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     from mascarin.building.parts.description import Description

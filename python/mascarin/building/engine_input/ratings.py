@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from mascarin.building.engine_input.description import describe
 from mascarin.building.parts.description import Description
-from mascarin.dataclass_methods import dataclass
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
 from mascarin.building.base.error_texts import KeyPath, Line
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 EXTENDS: Final = "extends"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
@@ -20,7 +20,6 @@ from mascarin.building.files.defaults import DEFAULTS, names_a_building, with_de
 from mascarin.building.files.inheritance import EXTENDS, Inherited, inherited
 from mascarin.building.files.recognition import recognized
 from mascarin.building.files.yaml_nodes import Reader, compose, number_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 AnyPart = TypeVar("AnyPart", bound=Part)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -13,7 +14,6 @@ import numpy.typing as npt
 from mascarin.building.geometry.flat import TOLERANCE, edges
 from mascarin.building.geometry.index import BoxIndex
 from mascarin.building.geometry.polygon import Polygon
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]

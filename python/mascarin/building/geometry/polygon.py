@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
@@ -32,7 +33,6 @@ from mascarin.building.geometry.space import (
     vector_area,
     vector_product,
 )
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io.listing import Listing
@@ -15,7 +16,6 @@ from mascarin.building.base.number import Number
 from mascarin.building.base.part import cached_on
 from mascarin.building.parameters.set_point_pairs import cut_ranges
 from mascarin.building.parameters.unused_parameters import without_effect
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:

@@ -6,6 +6,7 @@ A sensitivity analysis leaves them out, and the table of parameters gives the re
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from mascarin.building.base.leaves import leaves
@@ -21,7 +22,6 @@ from mascarin.building.parts.measured_sun import paths as obstructed_paths
 from mascarin.building.parts.openings.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.parts.openings.window import WindowInside, WindowOutside, outer_side
 from mascarin.building.parts.zone_surfaces import closed
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     from mascarin.building.parts.description import Description

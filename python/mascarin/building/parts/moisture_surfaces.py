@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.materials.phases import phase
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     from mascarin.building.parts.description import Description

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mascarin.building.parts.defaults import outlines, sides_by_zone, window_outlines
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     from mascarin.building.geometry import Polygon

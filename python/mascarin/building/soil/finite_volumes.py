@@ -10,12 +10,12 @@ Source: Patankar 1980, Numerical Heat Transfer and Fluid Flow, ch. 4 (finite vol
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin.building.soil.grid import COARSE, FINE, axis
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import SolverError
 
 if TYPE_CHECKING:

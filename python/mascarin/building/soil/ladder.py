@@ -12,13 +12,13 @@ doi:10.1109/43.712097 (projected networks stay passive).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin.building.soil.finite_volumes import FiniteVolumes, SoilGeometry
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import SolverError
 
 if TYPE_CHECKING:

@@ -26,14 +26,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.base.problem import CalibrationProblem
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.validation.comparison import GUIDELINE_PARAMETERS, OVER_MEAN, mean_refusal
 

@@ -13,6 +13,7 @@ import base64
 import warnings
 from array import array
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
@@ -23,7 +24,6 @@ from mascarin import __version__
 from mascarin._io import atomic
 from mascarin._io.sealed import own_files, own_records
 from mascarin.calibration.base.cost import Cost
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from mascarin.calibration.base.problem import CalibrationProblem, FitParameter, FitSensor, Model
 from mascarin.calibration.base.result import Calibration, Minimum
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

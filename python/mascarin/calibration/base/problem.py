@@ -5,13 +5,12 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, SolverError
 from mascarin.measurements.uncertainty import SensorUncertainty
 

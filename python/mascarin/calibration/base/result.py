@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
@@ -15,7 +16,6 @@ from mascarin.calibration.base.evaluations import Trace
 from mascarin.calibration.base.problem import CalibrationProblem
 from mascarin.calibration.base.uncertainty import METHOD, Uncertainty
 from mascarin.calibration.sampling.posterior_sample import PosteriorSample
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import calibration as figures
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final, Literal
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 MethodName = Literal["least-squares", "hooke-jeeves", "particle-swarm", "hybrid", "cma-es", "emcee"]

@@ -24,13 +24,13 @@ https://doi.org/10.1201/9780429246593
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.base.problem import CalibrationProblem
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.recursion import recursion
 from mascarin.validation.series import Autoregression, fit_autoregressions
 

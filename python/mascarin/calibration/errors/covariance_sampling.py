@@ -20,7 +20,7 @@ Gelman A. (2006), Prior distributions for variance parameters in hierarchical mo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -38,7 +38,6 @@ from mascarin.calibration.errors.discrepancy import (
     root_of,
     together,
 )
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 

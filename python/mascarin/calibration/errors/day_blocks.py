@@ -20,14 +20,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

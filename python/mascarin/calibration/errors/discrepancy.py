@@ -25,14 +25,13 @@ Stat. 28, 350. https://doi.org/10.1080/10618600.2018.1529601
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, Experiments, product
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -19,7 +19,7 @@ Gelman A. et al. (2013), Bayesian Data Analysis, chapter 14 (linear models with 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -41,7 +41,6 @@ from mascarin.calibration.errors.linear_estimation import (
 from mascarin.calibration.errors.sampled_posterior import ChainLengths, Simulate, chains_of, coefficients_of
 from mascarin.calibration.sampling.posterior_sample import PosteriorSample
 from mascarin.calibration.sampling.truncated_normal import within_bounds
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

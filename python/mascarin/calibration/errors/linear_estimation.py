@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -22,7 +22,6 @@ from mascarin.calibration.errors.discrepancy import (
     together,
 )
 from mascarin.calibration.errors.sensor_errors import SensorError, error_columns
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 

@@ -18,14 +18,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.errors.bounded_coefficients import LARGEST_ERROR
-from mascarin.dataclass_methods import dataclass
 from mascarin.materials.iso_10456 import unusual
 
 if TYPE_CHECKING:

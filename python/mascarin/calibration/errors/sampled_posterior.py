@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -32,7 +32,6 @@ from mascarin.calibration.sampling.marginals import Marginals
 from mascarin.calibration.sampling.nuts import StepSize, moved
 from mascarin.calibration.sampling.posterior_sample import PosteriorSample
 from mascarin.calibration.sampling.response_surface import response_surface
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -13,11 +13,10 @@ JCGM 200:2012, International vocabulary of metrology (VIM), 2.13, 2.17, 2.21.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -14,7 +15,6 @@ from mascarin.calibration.base.evaluations import Evaluator
 from mascarin.calibration.base.problem import CalibrationProblem
 from mascarin.calibration.base.result import Minimum
 from mascarin.calibration.base.search_options import SearchOptions
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import SolverError
 from mascarin.optimization import (
     CovarianceSearch,

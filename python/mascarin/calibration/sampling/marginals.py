@@ -13,12 +13,11 @@ Quantification 6, 645. https://doi.org/10.1137/17M1134640
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 

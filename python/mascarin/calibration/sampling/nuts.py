@@ -17,13 +17,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 Density = Callable[[Floats], tuple[float, Floats]]

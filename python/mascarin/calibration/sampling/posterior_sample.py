@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -18,7 +19,6 @@ from mascarin.calibration.sampling.convergence import (
     r_hat,
     tail_size,
 )
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     import pandas as pd

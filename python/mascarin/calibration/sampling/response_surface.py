@@ -11,12 +11,11 @@ prediction, Technometrics 16, 125 (errors of points left out). https://doi.org/1
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]

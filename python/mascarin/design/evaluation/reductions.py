@@ -6,14 +6,13 @@ are states or means at the end of a step; the first record is the state at the s
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin._io.limits import TOLERANCE, at_least, excess, shortfall
 from mascarin.comfort import Surroundings
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin.building.parts import site_air
-from mascarin.dataclass_methods import dataclass
 from mascarin.simulation import Simulation
 
 if TYPE_CHECKING:

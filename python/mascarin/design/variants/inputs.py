@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,7 +14,6 @@ from mascarin.building import Building, TextInfiltration, load
 from mascarin.building.files import yaml_document
 from mascarin.building.parameters.ties import expanded, spread
 from mascarin.comfort import Surroundings
-from mascarin.dataclass_methods import dataclass
 from mascarin.design.evaluation.checks import require_no_columns, require_same_basis
 from mascarin.design.evaluation.objectives import Comfort
 from mascarin.design.variants.description import FILE_KEYS, DesignFile

@@ -13,11 +13,10 @@ Law (2015), Simulation Modeling and Analysis, 5th ed., ch. 10 (common random num
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,7 +12,6 @@ import numpy as np
 
 from mascarin import __version__
 from mascarin._io import atomic
-from mascarin.dataclass_methods import dataclass
 from mascarin.design.evaluation.objective import column_of_part
 from mascarin.design.variants.ranking import pareto, ranked
 from mascarin.errors import SolverError

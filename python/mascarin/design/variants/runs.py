@@ -8,7 +8,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -16,7 +16,6 @@ import numpy as np
 
 from mascarin._io.sealed import own_files
 from mascarin.building.parameters.ties import spread
-from mascarin.dataclass_methods import dataclass
 from mascarin.design.evaluation.layers import LayerFacts
 from mascarin.design.evaluation.objective import column_of_part
 from mascarin.design.evaluation.reductions import BINS, DaysInBin

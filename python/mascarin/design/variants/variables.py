@@ -5,14 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin._io.limits import at_least, at_most
 from mascarin.building.parameters.ties import expanded, spread
-from mascarin.dataclass_methods import dataclass
 from mascarin.design.variants.description import MAX_DESIGNS
 from mascarin.errors import InputError
 from mascarin.materials import product, products

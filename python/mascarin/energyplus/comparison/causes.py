@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.comparison.run_folder import PeerRun
 from mascarin.energyplus.conversion import Conversion
 from mascarin.energyplus.writing import level_lines

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 from typing import Final
@@ -9,7 +10,6 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.comparison.causes import known_causes
 from mascarin.energyplus.comparison.run_folder import TITLES, PeerRun, read_run, rms
 from mascarin.energyplus.comparison.series import Array

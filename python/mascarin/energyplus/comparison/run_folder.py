@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import date, timedelta
 from pathlib import Path
 from typing import Final
@@ -12,7 +12,6 @@ from typing import Final
 import numpy as np
 
 from mascarin._io.regular import require_regular
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.comparison.series import Array, RunPeriod, read_series
 from mascarin.energyplus.conversion import Conversion
 from mascarin.errors import InputError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from mascarin._io.regular import require_regular
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.envelope.idf_surfaces import OPENINGS, SURFACES
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads

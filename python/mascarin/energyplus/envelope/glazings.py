@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.envelope.materials import layers_of
 from mascarin.energyplus.envelope.simple_glazing import simple_glazing
 from mascarin.energyplus.envelope.window_data import DataFile, read_data_file

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads

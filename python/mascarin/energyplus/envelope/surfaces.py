@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 from mascarin.building.geometry import Polygon
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.envelope.constructions import construction
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
 from mascarin.energyplus.envelope.glazings import construction_of

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.idf import IdfObject
 
 #: Surface resistances that a conductance of the file does not contain (EN 673) [m2 K/W].

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 from mascarin.building.parts.description import Description
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.findings import Findings
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfModel, IdfObject

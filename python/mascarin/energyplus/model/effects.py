@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cache
 from importlib.resources import files
-
-from mascarin.dataclass_methods import dataclass
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.effects import Effect, effect_of
 from mascarin.energyplus.model.idf import IdfObject
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.handlers import HasModel, reads
 from mascarin.energyplus.model.idf import IdfModel, IdfObject
 

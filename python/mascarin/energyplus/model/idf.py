@@ -11,14 +11,13 @@ import json
 import re
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
 from mascarin.building.files.recognition import described
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.expressions import values_of_first_run, with_values
 from mascarin.energyplus.model.field_checks import AUTO, wrong_number
 from mascarin.errors import InputError, did_you_mean

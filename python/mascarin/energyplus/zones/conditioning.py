@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year

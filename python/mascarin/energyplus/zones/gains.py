@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.context import Context, Vapour
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject

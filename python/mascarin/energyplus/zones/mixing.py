@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject

@@ -5,11 +5,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.envelope.idf_surfaces import IdfOpening, IdfSurface
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context, Section

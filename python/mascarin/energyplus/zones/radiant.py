@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.envelope.glazings import construction_of
 from mascarin.energyplus.envelope.idf_surfaces import IdfOpening, IdfSurface
 from mascarin.energyplus.envelope.materials import layers_of

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from mascarin.building.parts.site import Wind, wind_factor
-from mascarin.dataclass_methods import dataclass
 from mascarin.energyplus.envelope.idf_surfaces import IdfSurface, floor_area, turned
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 import numpy as np
 from markupsafe import Markup
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures.svg.chart import Array, Axis
 
 

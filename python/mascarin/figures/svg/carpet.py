@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import base64
 import io
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures.svg.chart import Array
 
 #: Colors at -limit, -limit/2, 0, +limit/2, +limit: blue to red through a light grey; distinct in the

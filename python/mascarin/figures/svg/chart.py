@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 from markupsafe import Markup, escape
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures import text
 
 #: Width of a letter of the name of a mark. [px]

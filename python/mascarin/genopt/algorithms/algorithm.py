@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import did_you_mean
 from mascarin.genopt.algorithms.catalog import ALGORITHMS, Algorithm
 from mascarin.genopt.algorithms.searches import Context

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.genopt.algorithms import searches
 from mascarin.genopt.algorithms.searches import Context
 from mascarin.genopt.algorithms.settings import Keys

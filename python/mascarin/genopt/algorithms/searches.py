@@ -7,9 +7,9 @@ of the section ``Algorithm``; `pattern` and `interval` make such a function for 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import cast
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.genopt.algorithms.settings import Keys
 from mascarin.genopt.files import functions
 from mascarin.genopt.files.numbers import double_text, single_rounding

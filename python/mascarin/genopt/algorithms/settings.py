@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import did_you_mean
 from mascarin.genopt.files.numbers import parse_double
 from mascarin.genopt.files.syntax import Entry, Report

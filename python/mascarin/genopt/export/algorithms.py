@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 
 PARTICLES: Final = 20

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -22,7 +22,6 @@ from mascarin._io.regular import require_regular
 from mascarin._io.sealed import own_files
 from mascarin.calibration.base.cost import Cost, CostName
 from mascarin.calibration.base.problem import CalibrationProblem, FitParameter, FitSensor
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, SolverError, did_you_mean
 from mascarin.measurements.observation import instants, means
 from mascarin.simulation.preparation.engine_run import CompiledRun

@@ -13,13 +13,13 @@ import re
 import shutil
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from mascarin._io import atomic
 from mascarin._io.locks import writing_into
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.genopt.export.algorithms import INTERVALS, Algorithm, Plan, chosen
 from mascarin.genopt.export.exchange import (

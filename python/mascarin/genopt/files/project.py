@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.genopt.files.numbers import double_text, single_text
 from mascarin.genopt.files.syntax import Block, Report
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]

@@ -18,13 +18,12 @@ Efron B., Stein C. (1981), Ann. Stat. 9, 586. https://doi.org/10.1214/aos/117634
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 

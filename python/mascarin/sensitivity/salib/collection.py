@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.sensitivity.base.factors import Floats
 from mascarin.sensitivity.base.jackknife import Ratio, above_zero, interval, student_reach
 from mascarin.sensitivity.base.result import Sensitivity

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import warnings
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.sensitivity.base.factors import Floats
 from mascarin.sensitivity.salib.library import salib
 from mascarin.sensitivity.salib.plans import LEVELS, SalibName, SalibPlan

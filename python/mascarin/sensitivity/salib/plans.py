@@ -25,12 +25,12 @@ https://doi.org/10.1016/j.matcom.2009.01.023
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.sensitivity.base.factors import Factor, Floats, check_factors, grouped
 from mascarin.sensitivity.salib.library import salib

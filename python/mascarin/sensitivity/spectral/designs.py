@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.sensitivity.base.factors import Factor, Floats, check_factors, grouped, unit_factors
 

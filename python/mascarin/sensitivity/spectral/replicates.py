@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.sensitivity.base.factors import Floats
 from mascarin.sensitivity.spectral.designs import Design
 

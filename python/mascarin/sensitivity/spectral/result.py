@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.figures import colors
 from mascarin.figures import sensitivity as figures

@@ -10,12 +10,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-
-from mascarin.dataclass_methods import dataclass
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

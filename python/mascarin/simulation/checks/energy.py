@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 if TYPE_CHECKING:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
 from mascarin._io.sealed.own_files import json_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.simulation.checks.energy import balance_warnings
 from mascarin.simulation.checks.step_check import STEPS
 from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Final, Self
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.simulation.checks.energy import CLOSED
 from mascarin.simulation.checks.step_check import STEPS
 from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind

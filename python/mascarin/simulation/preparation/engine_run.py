@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final
@@ -14,7 +14,6 @@ import numpy as np
 
 from mascarin import _engine
 from mascarin._io import memory
-from mascarin.dataclass_methods import dataclass
 from mascarin.engine_errors import plan_of, translated
 from mascarin.errors import SolverError
 from mascarin.simulation.preparation.options import require_precision

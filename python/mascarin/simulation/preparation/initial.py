@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from pydantic import ValidationError
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.simulation.preparation.initial_state import (
     LIMITS,

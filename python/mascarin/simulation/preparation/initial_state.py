@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
@@ -22,7 +22,6 @@ from mascarin.building.parts.materials.phases import phase
 from mascarin.building.parts.openings.blind import Blind
 from mascarin.building.parts.openings.glazing import GivenGap, Glazing, SimpleGlazing
 from mascarin.building.soil.courses import behind_of, soil_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.physics import imposed_temperature
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import inspect
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
 
 from mascarin._io.arguments import names_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final
@@ -11,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io.durations import AutoStep, length_words, seconds_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.engine_errors import translated
 from mascarin.errors import InputError
 from mascarin.tables.times import local_time

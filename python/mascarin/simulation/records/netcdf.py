@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self, cast
 
@@ -17,7 +18,6 @@ import h5py
 import numpy as np
 
 from mascarin import __version__
-from mascarin.dataclass_methods import dataclass
 from mascarin.simulation.records.labels import TIME_NAMES
 from mascarin.simulation.records.netcdf_reading import seal
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, Final, Self
 
 from mascarin import __version__
 from mascarin._io.durations import length_words
 from mascarin._io.sealed import own_files
-from mascarin.dataclass_methods import dataclass
 
 _KEYS: Final = {"version": "mascarin_version", "building_hash": "building_sha256"}
 _TYPES: Final[dict[str, type | tuple[type, ...]]] = {

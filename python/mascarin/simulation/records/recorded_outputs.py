@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import datetime, tzinfo
 from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.times import epoch_seconds, local_time, stamps_of
 
 if TYPE_CHECKING:

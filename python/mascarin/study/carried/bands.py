@@ -17,13 +17,13 @@ Rasmussen C.E., Williams C.K.I. (2006), Gaussian Processes for Machine Learning,
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin._io.numbers import in_percent
 from mascarin._io.units import difference
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study_document.comparison import BandEntry

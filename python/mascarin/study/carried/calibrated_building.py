@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin import __version__
 from mascarin.building.parts.posterior import Posterior, SensorPosterior, table_of
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

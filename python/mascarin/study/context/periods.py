@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin._io.durations import record_seconds, seconds_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.measurements.observation import PERIODS
 from mascarin.study.file.description import IdentificationPlan

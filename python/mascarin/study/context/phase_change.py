@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from mascarin.building.parts.materials.material import PhaseChangeMaterial
 from mascarin.building.parts.materials.phase_change import TanhLaw
 from mascarin.building.parts.materials.phases import PhaseDensities, Phases, PhaseSpecificHeats
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
 from mascarin.building.engine_input.series_users import courses
-from mascarin.dataclass_methods import dataclass
 from mascarin.simulation.preparation.weather_inputs import corrected_forcing
 from mascarin.weather.instruments.column_errors import RIGHT, SUN, ColumnError
 from mascarin.weather.records.channels import CHANNELS, RADIATION

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,7 +14,6 @@ from mascarin.building.base.part import Part
 from mascarin.building.base.wildcards import is_pattern
 from mascarin.building.parameters.ties import expanded
 from mascarin.building.reading import explained, merged, over
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.study.file.data_sources import FILE_KEYS, Experiment
 from mascarin.study.file.description import StudyFile

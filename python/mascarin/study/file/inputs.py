@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,6 @@ import numpy as np
 
 from mascarin._io.sealed.cache import cache_folder
 from mascarin.building.engine_input import measured_columns
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.study.file.locations import Faults, Places
 from mascarin.tables.reading.table import read_table

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.study.file.description import StudyFile
 from mascarin.study.file.locations import Places

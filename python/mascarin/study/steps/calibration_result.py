@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mascarin._io.numbers import in_percent
 from mascarin.calibration.errors.posterior_checks import widening, with_wider_intervals
-from mascarin.dataclass_methods import dataclass
 from mascarin.linear_algebra import one_thread
 from mascarin.study.carried.bands import daily_means, day_numbers
 from mascarin.study.carried.calibrated_building import OtherNumbers, SensorRecord, with_posterior

@@ -6,6 +6,7 @@ correlations between the parameters.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,7 +15,6 @@ from mascarin.building.checks.conductances import BASIS, SUM, by_destination, co
 from mascarin.building.checks.conductances import TITLE as CONDUCTANCES
 from mascarin.building.engine_input.ratings import window_ratings
 from mascarin.building.heat_loss import heat_loss
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.study.context.phase_change import daily_range, day_of, latent_heat_of, melting_layers
 from mascarin.study_document.analysis import TableEntry

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -15,7 +15,6 @@ from mascarin.calibration.errors.joint_estimation import estimate_experiments
 from mascarin.calibration.errors.linear_estimation import ErrorStatement
 from mascarin.calibration.errors.sensor_errors import error_columns
 from mascarin.calibration.errors.stated_errors import shared_errors, sizes_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.measurements.scatter import scatter
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.context.step_cache import kept, kept_series

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form, within_reach
-from mascarin.dataclass_methods import dataclass
 from mascarin.study.context.forms import Choice, label
 from mascarin.study_document.comparison import MetricValues
 

@@ -7,14 +7,13 @@ distributions; its mean and variance are given.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mascarin.calibration.errors.nearness import nearness
 from mascarin.calibration.errors.pseudo_bma_weights import weighted_quantiles
-from mascarin.dataclass_methods import dataclass
 from mascarin.study.context.forms import comparable
 from mascarin.study.steps.error_model import (
     effects_of_sensors,

@@ -10,12 +10,12 @@ it is far from that, so that the steps of a coarse logger are not reported. Colu
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
 from mascarin._io.limits import above, below
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.arrays import Array, Flags, Lines
 from mascarin.tables.quality.switched_signals import is_switched, switched_levels
 

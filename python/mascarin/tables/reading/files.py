@@ -7,7 +7,7 @@ import hashlib
 import re
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,7 +15,6 @@ import numpy as np
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import JoinedBytes, read_csv
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
 from mascarin.tables.reading.archives import is_bsrn, is_meteo_france, of_one_station, read_bsrn, unpacked

@@ -6,9 +6,9 @@ import codecs
 import csv
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.tables.encodings import encodings_of
 from mascarin.tables.reading.numbers import EMPTY, WITH_CODE

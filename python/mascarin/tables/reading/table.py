@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from datetime import tzinfo
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
@@ -15,7 +15,6 @@ import numpy as np
 from mascarin._io import memory
 from mascarin._io.arguments import require_type
 from mascarin._io.durations import seconds_of, shift_of
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Flags, Lines
 from mascarin.tables.reading.files import Read, content_of, read_frame, with_time_column

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Any, Literal
-
-from mascarin.dataclass_methods import dataclass
 
 Topic = Literal["building", "pcm"]
 

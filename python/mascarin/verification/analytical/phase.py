@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import SolverError
 from mascarin.verification.analytical import setup
 from mascarin.verification.analytical.check import Case, Check

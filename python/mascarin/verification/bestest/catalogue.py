@@ -7,12 +7,11 @@ The standard itself was not available: the properties are those of public models
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Final, Literal
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Opening = Literal["south", "east_west", "panels", "none"]

@@ -6,7 +6,7 @@ An hour has the number of the hour that ends: hour 1 is 00:00 to 01:00, local st
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Final
@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.limits import TOLERANCE, at_least, at_most
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.verification.bestest.catalogue import Case
 from mascarin.verification.bestest.reference import Range, ranges

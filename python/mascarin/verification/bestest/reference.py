@@ -6,6 +6,7 @@ import csv
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -13,7 +14,6 @@ from typing import Final
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import csv_refused
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 PROGRAMS: Final = ("BSIMAC", "CSE", "DeST", "EnergyPlus", "ESP-r", "TRNSYS")

@@ -5,13 +5,13 @@ from __future__ import annotations
 import gzip
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin._io.regular import require_regular
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

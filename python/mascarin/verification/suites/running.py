@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.progress import ProgressOption, reporting
 from mascarin.verification.suites.case_data import FOLDER, CaseData, folder_of
 from mascarin.verification.suites.suite import Suite

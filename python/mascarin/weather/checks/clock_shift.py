@@ -15,11 +15,11 @@ balance of components as a check of instruments).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.arrays import Array, Flags
 from mascarin.weather.derived.sun_position import sun_over
 from mascarin.weather.records.channels import RADIATION

@@ -19,11 +19,11 @@ comes from about the sun goes with the beam).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.arrays import Array, Flags
 from mascarin.weather.checks.clock_shift import LAGS, NODE, Days, days_of
 from mascarin.weather.records.record import WeatherRecord

@@ -10,11 +10,11 @@ Kasten & Young 1989, Applied Optics 28(22), 4735-4738, doi:10.1364/AO.28.004735 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.arrays import Array
 from mascarin.tables.profile import PiecewiseProfile, index_nodes, node_times, pieces_for, trapezoid_weights
 from mascarin.weather.derived.sun_position import Sun

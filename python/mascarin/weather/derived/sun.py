@@ -16,13 +16,13 @@ import importlib
 import importlib.machinery
 import importlib.util
 import sys
+from dataclasses import dataclass
 from functools import cache, lru_cache
 from types import ModuleType
 from typing import Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.physics import STANDARD_PRESSURE
 from mascarin.tables.arrays import Array
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final, Protocol
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.arrays import Array
 from mascarin.weather.derived.sun import SunPath, direction, lagrange
 from mascarin.weather.records.channels import SUN_POSITION

@@ -9,13 +9,12 @@ an irradiance stays zero: by night there is nothing to add an offset to.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array
 from mascarin.tables.record import Record

@@ -8,11 +8,11 @@ here; pooch checks it.
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from mascarin._io.sealed.cache import cache_folder
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ import math
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import date, tzinfo
 from pathlib import Path
 from typing import Final
@@ -14,7 +15,6 @@ from typing import Final
 import numpy as np
 
 from mascarin._io.sealed.cache import Cached, cached
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 from mascarin.physics import dew_point
 from mascarin.tables.arrays import Array, Lines

@@ -14,10 +14,10 @@ Wilcox & Marion 2008, Users Manual for TMY3 Data Sets, NREL/TP-581-43156, doi:10
 from __future__ import annotations
 
 import lzma
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError, did_you_mean
 
 FOLDER: Final = Path(__file__).parents[1] / "climates"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final, Literal
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.record import Kind
 
 Basis = Literal["direct+diffuse", "global+diffuse", "all"]

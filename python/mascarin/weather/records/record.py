@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.tables.record import Record
 from mascarin.weather.records.channels import RADIATION, Basis
 from mascarin.weather.records.site import Place

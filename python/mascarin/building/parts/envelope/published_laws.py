@@ -7,6 +7,7 @@ derivatives, ensembles, calibrations and FMUs read its formula as that of a user
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any, Final
@@ -20,7 +21,6 @@ from mascarin.building.base.part import Shorthand
 from mascarin.building.files.yaml_document import plain
 from mascarin.building.parts.envelope.formula_law import LENGTH, PERIMETER
 from mascarin.building.parts.materials.formula import names_in
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import did_you_mean
 
 FILE: Final = "published_laws.yaml"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 from pydantic import ConfigDict, Field, field_validator, model_validator
@@ -12,7 +13,6 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from mascarin.building.base.number import Limits, Number, OnlyGiven, Quantity, noted_form, problem, shown
 from mascarin.building.base.part import Part, insist
-from mascarin.dataclass_methods import dataclass
 
 #: A number and its unit in one text.
 _WITH_UNIT: Final = re.compile(r"(?P<value>[-+]?\d+(\.\d*)?(e[-+]?\d+)?)\s*(?P<unit>[^\d\s,].*)")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
@@ -13,7 +14,6 @@ from mascarin.building.base.law_classes import PublishedLaw, classes_of, union_o
 from mascarin.building.base.law_table import SORPTION
 from mascarin.building.base.number import Number, Remark, problem
 from mascarin.building.base.part import Part, Shorthand, derived_number
-from mascarin.dataclass_methods import dataclass
 
 DATASET: Final = (
     "EnergyPlus 25.2, data set MoistureMaterials.idf (U.S. Department of Energy): sorption "

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from mascarin._io import units
-from mascarin.dataclass_methods import dataclass
 from mascarin.pages.study.data.labels import main_model, unit_of
 from mascarin.study_document.comparison import CriterionEntry
 from mascarin.study_document.document import StudyDocument

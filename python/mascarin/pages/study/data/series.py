@@ -10,7 +10,7 @@ import base64
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any, TypedDict
@@ -20,7 +20,6 @@ import numpy.typing as npt
 
 from mascarin._io import atomic
 from mascarin._io.sealed import own_files
-from mascarin.dataclass_methods import dataclass
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
 
 from mascarin._io import units
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures import text
 from mascarin.figures.svg.chart import Array, Svg
 from mascarin.pages.study.data.labels import label_of, main_model, period_label

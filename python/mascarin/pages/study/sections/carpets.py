@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from mascarin._io import units
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures.svg.carpet import Carpet, carpet, legend, round_limit
 from mascarin.pages.study.data.labels import label_of, main_model, unit_of
 from mascarin.pages.study.data.series import Array, Series

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
 from mascarin._io.units import bracketed, shown
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures import text
 from mascarin.figures.comparison import Compared, errors, errors_together, series, together
 from mascarin.pages.study.data.labels import (

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, Final
 
 from markupsafe import Markup
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.figures import text
 from mascarin.figures.svg.chart import Svg
 from mascarin.pages.study.data.labels import model_label

@@ -6,11 +6,11 @@ import csv
 import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
 from mascarin.verification.suites.verdict import VerdictLine, around
 

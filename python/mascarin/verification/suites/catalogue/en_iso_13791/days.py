@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-
-from mascarin.dataclass_methods import dataclass
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -5,11 +5,11 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
 from mascarin.verification.suites.catalogue.en_iso_13791.components import TOLERANCE
 from mascarin.verification.suites.catalogue.en_iso_13791.days import DAYS, Day

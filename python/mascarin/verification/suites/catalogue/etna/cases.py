@@ -6,12 +6,12 @@ import csv
 import io
 import json
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 import pandas as pd
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.verification.suites.case_data import CaseData, Tree, simulated
 from mascarin.verification.suites.verdict import VerdictLine, around
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.verification.suites.case_data import CaseData, simulated
 from mascarin.verification.suites.catalogue.rp1052.room import (
     CLOSED,

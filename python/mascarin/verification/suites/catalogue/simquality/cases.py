@@ -5,12 +5,12 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
 from mascarin.verification.suites.catalogue.simquality.rooms import (
     INSULATED,

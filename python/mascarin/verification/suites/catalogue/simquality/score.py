@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.dataclass_methods import dataclass
 from mascarin.verification.suites.case_data import CaseData
 
 if TYPE_CHECKING:
