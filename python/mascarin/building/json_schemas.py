@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Final
 
-from pydantic.json_schema import GenerateJsonSchema
-
 from mascarin.building.base.docstrings import summary_of
+from mascarin.building.base.nested_schema import PartJsonSchema
 from mascarin.building.base.number import Number
 from mascarin.building.base.part import Part
 from mascarin.building.building import Building
@@ -38,7 +37,7 @@ _DEFAULTS: Final = {
 }
 
 
-class _Schema(GenerateJsonSchema):
+class _Schema(PartJsonSchema):
     """JSON Schema with the defaults of numbers and without titles that repeat the keys."""
 
     def encode_default(self, dft: Any) -> Any:

@@ -1,13 +1,10 @@
-"""Phase-change products with their properties, and materials from calorimeter files (`from_dsc`)."""
+"""Phase-change products with their properties, and materials from calorimeter files (`from_dsc`).
+
+The public names are listed in ``__init__.pyi`` and imported when they are first used.
+"""
 
 from __future__ import annotations
 
-from mascarin.materials.dsc import DscMaterial, from_dsc
-from mascarin.materials.dsc_several import from_dsc_files
-from mascarin.materials.library import Curve, Product, product, products, search
+import lazy_loader
 
-__all__ = ["Curve", "DscMaterial", "Product", "from_dsc", "from_dsc_files", "product", "products", "search"]
-
-
-def __dir__() -> list[str]:
-    return __all__
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -482,8 +482,7 @@ class Results(Mapping[str, "xr.DataArray"]):
         )
 
     def _rows(self) -> list[tuple[str, str]]:
-        residual = self.energy.relative_residual
-        return labels.rows(list(self), self.index, self.provenance, residual, self.warnings)
+        return labels.rows([*self], self.index, self.provenance, self.energy.relative_residual, self.warnings)
 
     def _position(self, name: str) -> int:
         for position, output in enumerate(self.outputs):

@@ -55,7 +55,8 @@ class PiecewiseProfile:
         inner = np.clip(position - row, 0.0, 1.0) * pieces
         node = np.minimum(inner.astype(np.int64), pieces - 1)
         weight = inner - node
-        return np.asarray((1.0 - weight) * self.nodes[row, node] + weight * self.nodes[row, node + 1])
+        nodes, before = self.nodes.ravel(), row * (pieces + 1) + node
+        return np.asarray((1.0 - weight) * nodes.take(before) + weight * nodes.take(before + 1))
 
     def means(self, edges: Array) -> Array:
         """Mean over each span between consecutive edges.
@@ -74,7 +75,7 @@ class PiecewiseProfile:
         width = self.interval / pieces
         inside = self.start + width * np.arange(count * pieces + 1)
         inside = inside[(inside > edges[0]) & (inside < edges[-1])]
-        cuts = np.sort(np.concatenate([edges, inside]))
+        cuts = np.sort(np.concatenate([edges, inside]), kind="stable")  # quick for two that are sorted
         # Each once; `numpy.unique` would import masked arrays.
         cuts = cuts[np.concatenate([[True], np.diff(cuts) > 0.0])]
         # On a piece without a node inside, the mean of a linear function is its value in the middle.

@@ -14,13 +14,32 @@ from ruamel.yaml.error import YAMLError
 
 import mascarin
 from mascarin.building.files import yaml_nodes
-from mascarin.building.files.yaml_nodes import compose
+from mascarin.building.files.yaml_document import plain
+from mascarin.building.files.yaml_nodes import Reader, compose
 
 #: Pieces of which texts are made, among them those that YAML 1.1 and 1.2 read in different ways.
 PIECES = [
     *("- ", "? ", ": ", ", ", "a: ", "b:", "{", "}", "[", "]", "\n", "\n  ", "\n- ", "#c", " # c\n"),
     *("&a ", "*a", "&b-c\n", "*b-c", "&a:", "! ", "!!str ", "!x ", "<<: *a", "---\n", "...\n"),
-    *("yes", "null", "~", "''", '"', "'", '"x\\/y"', '"\\x41"', "017", "0o17", "1_000", "71e3", "12:30"),
+    *(
+        "yes",
+        "null",
+        "~",
+        "''",
+        '"',
+        "'",
+        '"x\\/y"',
+        '"\\x41"',
+        "017",
+        "0o17",
+        "1_000",
+        "71e3",
+        "True",
+        "nULL",
+        "-1.5E-3",
+        "1e+",
+        "12:30",
+    ),
     *("\t", "\x85", "\u2028", "\r", ">-\n  a\n", "|#", "|\n  a\n", "a:b", "=", "é", "-", "\\", "%", "@"),
     *("%YAML 1.1\n", ".5", "`", "*", "&", "w_*.x", "a&b.c", "*a.b"),
 ]
@@ -52,7 +71,7 @@ def outcome(text: str, read: Any) -> Any:
 
 
 def same(text: str) -> bool:
-    return bool(outcome(text, lambda t: compose(reader(), t)) == outcome(text, lambda t: reader().compose(t)))
+    return bool(outcome(text, lambda t: compose(Reader(), t)) == outcome(text, lambda t: reader().compose(t)))
 
 
 @pytest.mark.filterwarnings("ignore::ruamel.yaml.error.ReusedAnchorWarning")
@@ -73,14 +92,39 @@ def test_shipped_files_are_read_the_same(path: Path) -> None:
 
 def test_a_description_is_read_by_the_c_library(monkeypatch: pytest.MonkeyPatch) -> None:
     path = next(path for path in shipped() if path.stem == "building" and path.parent.name == "lgi")
-    yaml = reader()
-    monkeypatch.setattr(yaml, "compose", lambda _: pytest.fail("read by the scanner in Python"))
-    assert compose(yaml, path.read_text(encoding="utf-8")) is not None
+    own = Reader()
+    monkeypatch.setattr(own.yaml, "compose", lambda _: pytest.fail("read by the scanner in Python"))
+    assert compose(own, path.read_text(encoding="utf-8")) is not None
+
+
+def test_plain_words_need_no_ruamel(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It would take longer to import than a description to read."""
+    monkeypatch.setattr(Reader, "yaml", property(lambda _: pytest.fail("ruamel.yaml was asked")))
+    text = "{a: true, b: False, c: null, d: 1.5, e: -71e-3, f: 2.5E+4, g: tarp, h: north, i: 12, j: '017'}"
+    tags = [value.tag.rpartition(":")[2] for _, value in compose(Reader(), text).value]
+    assert tags == ["bool", "bool", "null", "float", "float", "float", "str", "str", "int", "str"]
+    assert plain(text.replace("c: null, ", ""), "words.yaml") == {
+        "a": True, "b": False, "d": 1.5, "e": -0.071, "f": 25000.0, "g": "tarp", "h": "north", "i": 12,
+        "j": "017",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["true", "True", "TRUE", "tRUE", "False", "null", "Null", "nULL", "n", "y", "yes", "on", "nan", "inf",
+     "", "~", "15min", "15 min", "3d", "0d", "12:30:00Z", "1f", "1e5f", "2010-08-02",
+     "2010-8-2", "2010-08-02 12:00", "2010-08-02t12:00:00z", "0x1F",
+     "0o17", "0b1", "1z", ".inf", "-.INF", ".nan", "-x", "=", "-", "1,5", "1/h", "1_000",
+     "1e5", "-1.e5", "1e", "1e+", "e5", "+1e5", "1_0e5", "1.5E-3", "0e0", "00e1"],
+)  # fmt: skip
+def test_words_are_those_of_ruamel(word: str) -> None:
+    assert same(f"a: {word}")
+    assert same(f"a: '{word}'")
 
 
 def test_without_the_c_library_ruamel_reads_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "yaml.cyaml", None)
-    root = compose(reader(), "a: 71e3")
+    root = compose(Reader(), "a: 71e3")
     assert root is not None
     assert root.value[0][1].tag == "tag:yaml.org,2002:float"
 
@@ -88,7 +132,7 @@ def test_without_the_c_library_ruamel_reads_alone(monkeypatch: pytest.MonkeyPatc
 def test_values_inside_each_other_are_counted_before_python_gives_up() -> None:
     """A hundred thousand lists in lists end in an error of Python, not of the process."""
     with pytest.raises((RecursionError, YAMLError)):
-        compose(reader(), "[" * 100_000)
+        compose(Reader(), "[" * 100_000)
 
 
 @pytest.mark.parametrize("text", ["wall_*.outside: 1", "{a_*.b: [x&y/z]}", "- roof*!"])

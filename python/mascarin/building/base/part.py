@@ -18,6 +18,7 @@ from mascarin._io import display
 from mascarin.building.base.docstrings import documented, signature_of
 from mascarin.building.base.error_texts import explained
 from mascarin.building.base.fixed_mapping import fixed
+from mascarin.building.base.nested_schema import PartJsonSchema, built, schema_of
 from mascarin.building.base.number import (
     CHECK_SIGN,
     Number,
@@ -100,6 +101,23 @@ class Part(BaseModel, metaclass=PartType):
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Give the class a docstring made from its fields."""
         cls.__doc__ = documented(cls.__doc__ or "", cls.model_fields)
+
+    @classmethod
+    def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
+        """Build the validator of this class; those of the classes inside of it are built when they occur."""
+        return built(cls, _parent_namespace_depth=_parent_namespace_depth + 2, **options)
+
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return schema_of(cls, source, handler)
+
+    @classmethod
+    def model_json_schema(cls, *words: Any, **options: Any) -> dict[str, Any]:
+        """JSON Schema, with all parts that may be inside of this one."""
+        usual = {} if len(words) > 2 else {"schema_generator": PartJsonSchema}  # it is the third word
+        return super().model_json_schema(*words, **usual | options)
 
     def to_dict(self) -> dict[str, Any]:
         """Content of a YAML file: mappings, lists, texts and numbers.

@@ -19,7 +19,7 @@ from mascarin.building.base.part import Part
 from mascarin.building.files.defaults import DEFAULTS, names_a_building, with_defaults
 from mascarin.building.files.inheritance import EXTENDS, Inherited, inherited
 from mascarin.building.files.recognition import recognized
-from mascarin.building.files.yaml_nodes import compose, number_of
+from mascarin.building.files.yaml_nodes import Reader, compose, number_of
 from mascarin.errors import InputError
 
 AnyPart = TypeVar("AnyPart", bound=Part)
@@ -184,22 +184,17 @@ class _Document:
     faults: list[tuple[int, str]] = field(default_factory=list)
     values: int = 0
     most_values: int = MOST_VALUES
-    scalars: Any = None
+    reader: Reader = field(default_factory=Reader)
 
     def read(self, text: str) -> Any:
-        from ruamel.yaml import YAML
-        from ruamel.yaml.error import MarkedYAMLError, YAMLError
-
-        yaml = YAML(typ="safe", pure=True)
-        self.scalars = yaml.constructor
         self.most_values = max(MOST_VALUES, len(text))
         plain: Any = None
         try:
-            root = compose(yaml, text)
+            root = compose(self.reader, text)
             # A key without a value removes that of the base.
             self.blanks = self.blanks or _extends(root)
             plain = self._value(root, (), frozenset()) if root is not None else None
-        except MarkedYAMLError as error:
+        except self.reader.faults[0] as error:
             mark = error.problem_mark or error.context_mark
             self._refuse(
                 mark.line if mark else 0,
@@ -210,7 +205,7 @@ class _Document:
                 if "\\t" in str(error.problem)
                 else "Check indentation, colons and quotes near this line.",
             )
-        except YAMLError as error:
+        except self.reader.faults[1] as error:
             self._refuse(0, "", f"text that is no YAML: {error}", "valid YAML 1.2", "Save it as UTF-8 text.")
         except RecursionError:
             self._too_deep(0)
@@ -328,7 +323,7 @@ class _Document:
             )
             return None
         try:
-            return number_of(self.scalars, kind, node.value)
+            return number_of(self.reader, kind, node.value)
         except (ValueError, KeyError, IndexError, OverflowError):
             actual = f"the tag '{kind}' on the text '{node.value[:40]}'"
             self._refuse(line, _text(path), actual, "plain values", "Remove the tag.")

@@ -3,17 +3,19 @@
 ruamel.yaml decides what YAML 1.2 is: which texts are valid, and which words are numbers. Its scanner is
 written in Python and takes longer than everything else that is done with a description. Nodes are therefore
 made by libyaml, the C library behind PyYAML. What libyaml refuses, or could read in another way, ruamel.yaml
-reads alone.
+reads alone. It is imported when a text has such words: most descriptions have none.
 """
 
 from __future__ import annotations
 
 import re
+from functools import cached_property
 from string import ascii_letters
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ruamel.yaml import YAML
+    from ruamel.yaml.error import MarkedYAMLError, YAMLError
     from ruamel.yaml.nodes import ScalarNode
 
 #: Line ends of YAML 1.1 that are letters in YAML 1.2, the byte order mark, the first letter of directives,
@@ -25,24 +27,48 @@ _BEFORE = r"(?:^|[\s,\[\]{}:?\"'-])"
 _OTHER_ANCHORS = re.compile(_BEFORE + r"[&*][\w-]*[^\w\s,\]}-]", re.ASCII)
 #: Tags, which are written with other letters in YAML 1.1.
 _TAGS = re.compile(_BEFORE + "!")
-#: Words that both libraries know: decimal numbers, and those whose first letter makes them text.
+#: Words that are known: decimal numbers, and those that begin with a letter.
 _INTEGER = re.compile(r"-?[0-9]+")
 _COUNT = re.compile(r"-?(?:0|[1-9][0-9]*)")
 _DECIMAL = re.compile(r"-?[0-9]+\.[0-9]*")
-_BEGIN_WORDS = frozenset(ascii_letters) - frozenset("tTfFnN")
+_POWER_OF_TEN = re.compile(r"-?[0-9]+(?:\.[0-9]*)?[eE][-+]?[0-9]+")
+_LETTERS = frozenset(ascii_letters)
+_TRUTHS = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
+_NAMED = dict.fromkeys(_TRUTHS, "bool") | dict.fromkeys(("null", "Null", "NULL", "~", ""), "null")
+#: Words that begin with a digit and are no number and no time, by a letter in them; and dates.
+_BEGUN_WITH_DIGIT = re.compile("[1-9].*[a-df-su-yA-DF-SU-Y]")
+_DATE = re.compile("[0-9]{4}-[0-9]{2}-[0-9]{2}")
 _PREFIX = "tag:yaml.org,2002:"
 _COLLECTIONS = {"SequenceNode": "seq", "MappingNode": "map"}
 #: Nodes in nodes; the recursion of Python ends below this.
 _MOST_LEVELS = 100
 
 
-def compose(yaml: YAML, text: str) -> Any:
+class Reader:
+    """What ruamel.yaml decides, imported when it is needed."""
+
+    @cached_property
+    def yaml(self) -> YAML:
+        """A reader in Python of YAML 1.2."""
+        from ruamel.yaml import YAML
+
+        return YAML(typ="safe", pure=True)
+
+    @property
+    def faults(self) -> tuple[type[MarkedYAMLError], type[YAMLError]]:
+        """Errors with a place in the text, and all errors, of a text that is no YAML."""
+        from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+        return MarkedYAMLError, YAMLError
+
+
+def compose(reader: Reader, text: str) -> Any:
     """Read the nodes of a text.
 
     Parameters
     ----------
-    yaml : ruamel.yaml.YAML
-        A reader in Python of YAML 1.2.
+    reader : Reader
+        Reads what libyaml does not.
     text : str
         The text of one document.
 
@@ -61,12 +87,11 @@ def compose(yaml: YAML, text: str) -> Any:
 
     Examples
     --------
-    >>> from ruamel.yaml import YAML
-    >>> compose(YAML(typ="safe", pure=True), "volume: 30").value[0][1].tag
+    >>> compose(Reader(), "volume: 30").value[0][1].tag
     'tag:yaml.org,2002:int'
     """
-    root = _fast(yaml, text) if _surely_read(text) else None
-    return yaml.compose(text) if root is None else root
+    root = _fast(reader, text) if _surely_read(text) else None
+    return reader.yaml.compose(text) if root is None else root
 
 
 def _surely_read(text: str) -> bool:
@@ -75,12 +100,12 @@ def _surely_read(text: str) -> bool:
     return not otherwise and _OTHER_ANCHORS.search(text) is None and _TAGS.search(text) is None
 
 
-def _fast(yaml: YAML, text: str) -> Any:
+def _fast(reader: Reader, text: str) -> Any:
     """The root by libyaml; None where ruamel.yaml has to decide."""
     try:
         from yaml.error import YAMLError
 
-        return _composer()(yaml, text).get_single_node()
+        return _composer()(reader, text).get_single_node()
     except (ImportError, AttributeError):  # PyYAML without its C library, or an import that was interrupted
         return None
     except (YAMLError, _Undecided, ValueError):
@@ -96,9 +121,9 @@ def _composer() -> Any:
     from yaml.cyaml import CParser
 
     class Composer(CParser):  # type: ignore[misc]  # without types
-        def __init__(self, yaml: YAML, text: str) -> None:
+        def __init__(self, reader: Reader, text: str) -> None:
             super().__init__(text)
-            self._resolver, self._level = yaml.resolver, 0
+            self._reader, self._level = reader, 0
             self._known: dict[str, str] = {}
 
         def descend_resolver(self, _parent: object, _index: object) -> None:
@@ -112,14 +137,21 @@ def _composer() -> Any:
         def resolve(self, kind: type, value: str | None, implicit: Any) -> str:
             if value is None:
                 return f"{_PREFIX}{_COLLECTIONS[kind.__name__]}"
-            if not implicit[0] or value[:1] in _BEGIN_WORDS:
+            if not implicit[0]:
+                return f"{_PREFIX}str"
+            if value in _NAMED:
+                return f"{_PREFIX}{_NAMED[value]}"
+            if value[:1] in _LETTERS or _BEGUN_WITH_DIGIT.match(value):
                 return f"{_PREFIX}str"
             if _INTEGER.fullmatch(value):
                 return f"{_PREFIX}int"
-            if _DECIMAL.fullmatch(value):
+            if _DECIMAL.fullmatch(value) or _POWER_OF_TEN.fullmatch(value):
                 return f"{_PREFIX}float"
+            if _DATE.fullmatch(value):
+                return f"{_PREFIX}timestamp"
             if value not in self._known:
-                self._known[value] = str(self._resolver.resolve(_scalar_node(), value, implicit))
+                resolver = self._reader.yaml.resolver
+                self._known[value] = str(resolver.resolve(_scalar_node(), value, implicit))
             return self._known[value]
 
     return Composer
@@ -131,13 +163,13 @@ def _scalar_node() -> type[ScalarNode]:
     return ScalarNode
 
 
-def number_of(yaml_constructor: Any, tag: str, text: str) -> Any:
+def number_of(reader: Reader, tag: str, text: str) -> Any:
     """The number or truth value that a plain word is.
 
     Parameters
     ----------
-    yaml_constructor : ruamel.yaml.constructor.SafeConstructor
-        Makes values in Python of YAML 1.2.
+    reader : Reader
+        Reads what is not plain.
     tag : str
         ``bool``, ``int`` or ``float``.
     text : str
@@ -150,13 +182,14 @@ def number_of(yaml_constructor: Any, tag: str, text: str) -> Any:
 
     Examples
     --------
-    >>> from ruamel.yaml import YAML
-    >>> number_of(YAML(typ="safe", pure=True).constructor, "float", "71e3")
+    >>> number_of(Reader(), "float", "71e3")
     71000.0
     """
     if tag == "int" and _COUNT.fullmatch(text):
         return int(text)
-    if tag == "float" and _DECIMAL.fullmatch(text):
+    if tag == "float" and (_DECIMAL.fullmatch(text) or _POWER_OF_TEN.fullmatch(text)):
         return float(text)
+    if tag == "bool" and text in _TRUTHS:
+        return _TRUTHS[text]
     node = _scalar_node()(f"{_PREFIX}{tag}", text)
-    return getattr(yaml_constructor, f"construct_yaml_{tag}")(node)
+    return getattr(reader.yaml.constructor, f"construct_yaml_{tag}")(node)

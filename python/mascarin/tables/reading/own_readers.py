@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
     import pandas as pd
 
 Reader: TypeAlias = "Callable[[Path], pd.DataFrame]"
@@ -140,6 +141,8 @@ def read_own(path: Path, reader: Reader) -> pd.DataFrame:
 @cache
 def _entries() -> dict[str, tuple[EntryPoint, ...]]:
     """Entry points by the ending of their files."""
+    from importlib.metadata import entry_points
+
     readers: dict[str, tuple[EntryPoint, ...]] = {}
     for entry in entry_points(group=GROUP):
         key = entry.name.strip(". ").lower()

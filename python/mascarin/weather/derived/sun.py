@@ -179,11 +179,16 @@ def _turn(vector: Array, angle: Array) -> Array:
 def lagrange(nodes: Array, position: Array) -> Array:
     """Four-point Lagrange interpolation of nodes (n, k) at fractional node numbers; n is 4 at least."""
     base = np.clip(np.floor(position).astype(np.int64), 1, len(nodes) - 3)
-    x = (position - base)[..., None]
-    before, current, after, beyond = nodes[base - 1], nodes[base], nodes[base + 1], nodes[base + 2]
-    return np.asarray(
-        -x * (x - 1.0) * (x - 2.0) / 6.0 * before
-        + (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 * current
-        - (x + 1.0) * x * (x - 2.0) / 2.0 * after
-        + (x + 1.0) * x * (x - 1.0) / 6.0 * beyond
-    )
+    x = position - base
+    before, current = -x * (x - 1.0) * (x - 2.0) / 6.0, (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0
+    after, beyond = (x + 1.0) * x * (x - 2.0) / 2.0, (x + 1.0) * x * (x - 1.0) / 6.0
+    result = np.empty((*x.shape, nodes.shape[1]))
+    # Column by column, because numpy is slow over a last axis of three.
+    for k, column in enumerate(np.ascontiguousarray(nodes.T)):
+        result[..., k] = (
+            before * column.take(base - 1)
+            + current * column.take(base)
+            - after * column.take(base + 1)
+            + beyond * column.take(base + 2)
+        )
+    return result
