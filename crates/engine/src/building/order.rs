@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 
 use super::ids::SideId;
 use super::layout::{SidePlan, SideRole, SurfacePlan, ZonePlan};
-use super::pattern::Pattern;
+use super::pattern::{DENSE, Pattern};
 use crate::input::description::{Description, Facing, Vent, ZoneLongwave};
 
 /// The order of elimination; see [`Plan`](crate::building::plan::Plan).
@@ -113,7 +113,14 @@ impl Order {
             rows.sort_unstable();
             rows
         };
-        let later: Vec<Vec<usize>> = later.into_iter().skip(own_rows).map(of_row).collect();
+        let mut later: Vec<Vec<usize>> = later.into_iter().skip(own_rows).map(of_row).collect();
+        let size = later.len();
+        // Entries that are zero change no bit of the solution.
+        if size - constant_rows <= DENSE {
+            for (row, later) in later.iter_mut().enumerate().skip(constant_rows) {
+                *later = (row + 1..size).collect();
+            }
+        }
         (position, Self { own_rows, pattern: Pattern::new(&later), constant_rows, thick })
     }
 }

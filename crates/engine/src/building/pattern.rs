@@ -6,6 +6,10 @@
 
 use core::ops::Range;
 
+/// So many last rows, or fewer, are stored as if all of them met: they are eliminated in less time without their gaps
+/// (`linear/coupled/dense.rs`).
+pub(crate) const DENSE: usize = 6;
+
 /// Places of the entries of a sparse matrix and of its factors.
 #[derive(Debug, Clone)]
 pub(crate) struct Pattern {
@@ -21,9 +25,7 @@ pub(crate) struct RowPattern {
     pub(crate) entries: Range<usize>,
     /// Place of the diagonal.
     pub(crate) diagonal: usize,
-    /// Later rows that it meets, as runs without gaps.
-    pub(crate) reach: Vec<Range<usize>>,
-    /// The same rows one by one, and what its elimination does to them.
+    /// Later rows that it meets, and what its elimination does to them.
     pub(crate) later: Vec<LaterRow>,
 }
 
@@ -68,7 +70,6 @@ impl Pattern {
             rows.push(RowPattern {
                 entries: start..columns.len(),
                 diagonal: start + before,
-                reach: runs(&later[k]),
                 later: Vec::new(),
             });
         }
@@ -134,18 +135,6 @@ impl Pattern {
     }
 }
 
-/// Ascending numbers gathered into runs without gaps.
-fn runs(numbers: &[usize]) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some(run) if run.end == number => run.end += 1,
-            _ => runs.push(number..number + 1),
-        }
-    }
-    runs
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -165,11 +154,5 @@ mod tests {
         assert_eq!((*row, *entry, &segments[..]), (1, 3, &expected[..]));
         // Row 2 has columns 2 and 3 side by side.
         assert_eq!(pattern.row(1).later[0].segments, [Segment { of_pivot: 0..2, place: 8 }]);
-    }
-
-    #[test]
-    fn runs_of_numbers() {
-        assert_eq!(runs(&[1, 2, 3, 7, 9, 10]), [1..4, 7..8, 9..11]);
-        assert!(runs(&[]).is_empty());
     }
 }

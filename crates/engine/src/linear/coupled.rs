@@ -14,6 +14,10 @@ use crate::building::pattern::{Pattern, RowPattern};
 use crate::linear::product::{PlainMatrix, Product, SameKind};
 use crate::number::real::Real;
 
+use dense::DenseRows;
+
+mod dense;
+
 /// The system of airs and of the surfaces that zones share.
 #[derive(Debug, Clone)]
 pub(crate) struct CoupledSystem<'a, S> {
@@ -31,6 +35,8 @@ pub(crate) struct CoupledSystem<'a, S> {
     /// Matrix and right-hand sides after the elimination of the first unknowns.
     kept: Vec<S>,
     kept_right: Vec<S>,
+    /// The rows behind the first, where all of them meet.
+    dense: Option<DenseRows>,
 }
 
 impl<'a, S: Real> CoupledSystem<'a, S> {
@@ -39,7 +45,9 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
         // One entry more, at `nowhere`.
         let (all, line) = (vec![S::zero(); pattern.entries() + 1], vec![S::zero(); size]);
         let right = vec![S::zero(); before + size];
-        Self { pattern, before, first, kept: all.clone(), matrix: all, kept_right: line, right }
+        // Compiled for numbers in registers only: others do not solve stages in long runs.
+        let dense = if S::IN_REGISTERS { DenseRows::new(pattern, first) } else { None };
+        Self { pattern, before, first, kept: all.clone(), matrix: all, kept_right: line, right, dense }
     }
 
     #[inline(always)]
@@ -118,6 +126,11 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
     /// Solves for the unknowns behind the first; they replace their right-hand sides.
     #[inline(always)]
     pub(crate) fn solve_rest(&mut self) {
+        if const { S::IN_REGISTERS }
+            && let Some(dense) = &self.dense
+        {
+            return dense.solve(&mut self.matrix, &mut self.right[self.before..]);
+        }
         let rest = self.first..self.pattern.size();
         self.eliminate(rest.clone());
         let right = &mut self.right[self.before..];
@@ -224,14 +237,10 @@ fn back<S: Real, P: Product<S, R>, R: Real>(
     rows: Range<usize>,
 ) {
     for (k, row) in rows.clone().zip(pattern.rows(rows)).rev() {
-        let mut factors = &matrix[row.diagonal + 1..row.entries.end];
+        let factors = &matrix[row.diagonal + 1..row.entries.end];
         let mut sum = right[k];
-        for run in &row.reach {
-            let (of_run, rest) = factors.split_at(run.len());
-            for (&a, &x) in of_run.iter().zip(&right[run.clone()]) {
-                sum = sum - P::of(a, x);
-            }
-            factors = rest;
+        for (later, &factor) in row.later.iter().zip(factors) {
+            sum = sum - P::of(factor, right[later.row]);
         }
         right[k] = P::of(matrix[row.diagonal], sum);
     }

@@ -189,7 +189,16 @@ fn kind<S: Real>(wall: &WallCoefficients<S>, chain: &WallSystem<S>, index: usize
 /// `sum + map x` for some rows.
 #[inline(always)]
 fn multiply<S: Real>(mut sum: Rows<S>, map: &[Rows<S>], x: &[S]) -> Rows<S> {
-    for (column, &x) in map.iter().zip(x) {
+    // Some columns at a time: the compiler then counts no single ones.
+    let ((columns, rest), (some, others)) = (map.as_chunks::<ROWS>(), x.as_chunks::<ROWS>());
+    for (columns, some) in columns.iter().zip(some) {
+        for (column, &x) in columns.iter().zip(some) {
+            for (sum, &factor) in sum.iter_mut().zip(column) {
+                *sum += factor * x;
+            }
+        }
+    }
+    for (column, &x) in rest.iter().zip(others) {
         for (sum, &factor) in sum.iter_mut().zip(column) {
             *sum += factor * x;
         }

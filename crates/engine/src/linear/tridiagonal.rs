@@ -124,7 +124,7 @@ impl<S: Real> Tridiagonal<S> {
         self.eliminate::<false>(links, storage, |_| S::zero()).response
     }
 
-    /// Eliminates the cells from the matrix and from the right-hand side; [`Self::cell`] then gives the cells. `heat`: what is
+    /// Eliminates the cells from the matrix and from the right-hand side; [`Self::cells`] then gives the cells. `heat`: what is
     /// released in each cell beside the fluxes along the links [W/m2].
     #[inline(always)]
     pub(crate) fn condense(
@@ -186,10 +186,21 @@ impl<S: Real> Tridiagonal<S> {
         }
     }
 
-    /// Temperature of a cell after [`Self::condense`], from that of the outside surface and that of the node behind it.
+    /// Temperatures of the cells after [`Self::condense`] from those of the surfaces, from the last cell to the first; `write` is given each with
+    /// the place of the cell.
     #[inline(always)]
-    pub(crate) fn cell(&self, i: usize, outside: S, behind: S) -> S {
-        self.known[i] + self.to_outside[i] * outside + self.next[i] * behind
+    pub(crate) fn cells<P>(
+        &self,
+        [outside, inside]: [S; 2],
+        places: impl DoubleEndedIterator<Item = P> + ExactSizeIterator,
+        write: impl Fn(P, S),
+    ) {
+        let mut behind = inside;
+        let factors = self.known.iter().zip(&self.to_outside).zip(&self.next);
+        for (place, ((&known, &to_outside), &next)) in places.zip(factors).rev() {
+            behind = known + to_outside * outside + next * behind;
+            write(place, behind);
+        }
     }
 
     /// Eliminates the cells from another right-hand side. `heat` gives the heat released in a cell [W/m2] from its number and

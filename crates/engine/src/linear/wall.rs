@@ -148,12 +148,16 @@ impl<S: Real> WallSystem<S> {
     /// Cell temperatures from the surface temperatures.
     #[inline(always)]
     pub fn temperatures(&mut self, [outside, inside]: [S; 2], cells: &mut [S]) {
-        let mut change = inside;
-        for i in (0..cells.len()).rev() {
-            change = self.elimination.cell(i, outside, change);
-            self.storage[i].change = change;
-            cells[i] = self.storage[i].reference + change;
-        }
+        let places = self.storage.iter_mut().zip(cells);
+        self.elimination.cells(
+            [outside, inside],
+            places,
+            #[inline(always)]
+            |(storage, cell), change| {
+                storage.change = change;
+                *cell = storage.reference + change;
+            },
+        );
     }
 
     /// Replaces the temperatures of cells of constant properties by those at the end of a stage that starts from them, between

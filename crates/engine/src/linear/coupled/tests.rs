@@ -1,7 +1,7 @@
 //! The coupled system against a dense solver: in parts, with other right-hand sides, transposed.
 
 use super::CoupledSystem;
-use crate::building::pattern::Pattern;
+use crate::building::pattern::{DENSE, Pattern};
 use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
 use crate::number::dual::Dual;
 
@@ -107,6 +107,35 @@ fn random_m_matrices_are_solved_as_the_dense_solver_solves_them() {
             assert!(duals[before..].iter().zip(&solved).all(|(dual, &bits)| dual.value.to_bits() == bits));
         }
     }
+}
+
+/// The last rows, of which all meet, eliminated by themselves: the factors and the solution have the bits of the sparse elimination.
+#[test]
+fn dense_rows_have_the_bits_of_sparse_ones() {
+    let bits = |numbers: &[f64]| -> Vec<u64> { numbers.iter().map(|number| number.to_bits()).collect() };
+    for size in 1..=9 {
+        let (matrix, pattern) = (m_matrix(size), full(size));
+        for first in 0..size {
+            let mut system = CoupledSystem::new(&pattern, 0, first);
+            assert_eq!(system.dense.is_some(), size - first <= DENSE, "{size} unknowns, {first} first");
+            for (k, &value) in matrix.iter().enumerate() {
+                system.add(k / size, k % size, value);
+            }
+            system.right = Numbers::new(5).line(size);
+            system.keep_matrix();
+            system.keep_right();
+            let mut sparse = CoupledSystem { dense: None, ..system.clone() };
+            for system in [&mut system, &mut sparse] {
+                system.begin();
+                system.solve_rest();
+            }
+            assert_eq!(bits(&system.matrix), bits(&sparse.matrix), "{size} unknowns, {first} first");
+            assert_eq!(bits(&system.right), bits(&sparse.right), "{size} unknowns, {first} first");
+        }
+    }
+    // Rows 0 and 2 do not meet.
+    let pattern = Pattern::new(&[vec![1], vec![2], vec![]]);
+    assert!(CoupledSystem::<f64>::new(&pattern, 0, 0).dense.is_none());
 }
 
 /// `w . (A^-1 b) = (A^-T w) . b`.

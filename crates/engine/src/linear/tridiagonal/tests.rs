@@ -79,11 +79,7 @@ fn the_chain_is_solved_as_the_dense_solver_solves_it() {
         let mut factors = Tridiagonal::new(n);
         let condensed = factors.condense(&chain.links, |i| chain.storage[i], |i| heat[i]);
         let mut cells = vec![0.0; n];
-        let mut behind = SURFACES[1];
-        for i in (0..n).rev() {
-            behind = factors.cell(i, SURFACES[0], behind);
-            cells[i] = behind;
-        }
+        factors.cells(SURFACES, cells.iter_mut(), |cell, temperature| *cell = temperature);
         close(&cells, &chain.dense(&heat, SURFACES, true), 1e-13, &format!("{n} cells"));
         let expected = chain.heat(&cells, SURFACES);
         let affine = [0, 1].map(|e| condensed.source[e] + condensed.response.heat(e, SURFACES));

@@ -124,22 +124,27 @@ impl<S: Real> Exterior<S> {
         interior_heat: &mut [S],
     ) {
         self.laws.set_wind(conditions);
-        self.beside_windows[0].copy_from_slice(&interior_heat[layout.window_places()]);
+        let windows = layout.window_places();
+        self.beside_windows[0].copy_from_slice(&interior_heat[windows.clone()]);
+        // In the order of the surfaces.
+        let sources = sources.as_flattened();
         for ((heat, &area), interior) in interior_heat.iter_mut().zip(&self.wall_area).zip(&layout.walls) {
-            *heat += area * sources[interior.wall()][interior.side()];
+            *heat += area * sources[interior.index()];
         }
-        for (i, interior) in layout.walls.iter().enumerate().take(layout.exterior) {
-            let at = &conditions.surfaces[interior.opposite()];
-            let source = sources[interior.wall()];
-            let beside = at.solar + at.longwave;
-            self.heat[i] = source[interior.opposite().side()] + beside;
-            if let Some(k) = i.checked_sub(layout.exterior - layout.windows) {
-                self.beside_windows[1][k] = beside;
+        let numbers =
+            self.heat.iter_mut().zip(&mut self.laws.air).zip(self.imposed.iter_mut().zip(&self.fixed));
+        for (interior, ((heat, air), (imposed, &fixed))) in layout.walls[..windows.end].iter().zip(numbers) {
+            let exterior = interior.opposite();
+            let at = &conditions.surfaces[exterior];
+            *heat = sources[exterior.index()] + (at.solar + at.longwave);
+            *air = at.temperature;
+            if fixed {
+                *imposed = at.temperature;
             }
-            self.laws.air[i] = at.temperature;
-            if self.fixed[i] {
-                self.imposed[i] = at.temperature;
-            }
+        }
+        for (beside, window) in self.beside_windows[1].iter_mut().zip(&layout.walls[windows]) {
+            let at = &conditions.surfaces[window.opposite()];
+            *beside = at.solar + at.longwave;
         }
     }
 

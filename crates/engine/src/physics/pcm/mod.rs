@@ -81,6 +81,9 @@ pub struct PcmCoefficients<S> {
     conductivity_rise: S,
     heat_rise: S,
     law: Law<S>,
+    /// Temperature of the steepest part of the enthalpy curve [degC] and half-width of the melting range [K]; none where the history has
+    /// them, or nothing melts.
+    steep: Option<[S; 2]>,
 }
 
 #[derive(Debug, Clone)]
@@ -136,7 +139,13 @@ impl<S: Real> PcmCoefficients<S> {
         };
         let conductivity = [conductivity[0], conductivity[1] * (liquid / solid)];
         let volumetric_heat = specific_heat.map(|id| solid * values.get(id));
+        let steep = match &law {
+            Law::Melting(_, curve) => Some([curve.peak(), curve.width()]),
+            Law::Table(table) => Some([table.peak(), table.width()]),
+            Law::History(..) | Law::Sensible(_) => None,
+        };
         Self {
+            steep,
             conductivity_rise: conductivity[1] - conductivity[0],
             heat_rise: volumetric_heat[1] - volumetric_heat[0],
             conductivity,
@@ -154,6 +163,7 @@ impl<S: Real> PcmCoefficients<S> {
             conductivity_rise: zero,
             heat_rise: zero,
             law: Law::Sensible(conductivity),
+            steep: None,
         }
     }
 
@@ -364,13 +374,11 @@ impl<S: Real> PcmCoefficients<S> {
     /// than a half-width ends on the inflection, from where Newton's method converges monotonically.
     #[inline(always)]
     pub fn limit(&self, from: S, to: S, history: &PcmHistory<S>) -> S {
-        let (peak, width) = match &self.law {
-            Law::Melting(_, curve) => (curve.peak(), curve.width()),
-            Law::Table(table) => (table.peak(), table.width()),
-            Law::History(_, law) => return law.limit(from, to, history),
-            Law::Sensible(_) => return to,
-        };
-        limit_at(from, to, peak, width)
+        match (&self.steep, &self.law) {
+            (Some([peak, width]), _) => limit_at(from, to, *peak, *width),
+            (None, Law::History(_, law)) => law.limit(from, to, history),
+            (None, _) => to,
+        }
     }
 
     /// Limits a Newton step along a curve with several bends, such as a measured one, after the first steps. Where the curve rises by much
