@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
@@ -10,9 +11,11 @@ import pandas as pd
 import pytest
 
 import mascarin as mc
+from mascarin.calibration.errors.posterior_checks import Contradiction, of_fit
 from mascarin.errors import InputError
 from mascarin.study import Study
 from mascarin.study.carried.bands import day_numbers
+from mascarin.study.steps import predictive_checks
 from study_support import BUILDING, STUDY, TRUTH, Bench, drivers, logger_table, open_climate
 
 INSULATION = "materials.insulation.conductivity"
@@ -171,3 +174,26 @@ def test_what_is_not_estimated_cannot_be_sampled(bench: Bench) -> None:
     file.write_text(scatter.replace("  starts: 2", "  starts: 2\n  posterior: sampled"), encoding="utf-8")
     with pytest.raises(InputError, match="posterior: found sampled, expected linearized"):
         Study.from_yaml(file)
+
+
+def test_a_fit_that_is_worse_than_the_description_has_no_bands_elsewhere(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its own bands stay, because they hold there; the report and another study say why."""
+    for name in ("building.yaml", "study.yaml", "logger.csv", "second.yaml", "again.yaml"):
+        (tmp_path / name).write_bytes((bench.folder / name).read_bytes())
+
+    def worse(described: dict[str, float], *_: object) -> list[Contradiction]:
+        return of_fit(*(dict.fromkeys(described, size) for size in (0.1, 0.2, 1.0)))
+
+    monkeypatch.setattr(predictive_checks, "of_fit", worse)
+    results = Study.from_yaml(tmp_path / "study.yaml").run(tmp_path / "out", figures=False)
+    assert any("2.00 times, most in" in one.text for one in results.contradictions)
+    document = json.loads((tmp_path / "out" / "study.json").read_text(encoding="utf-8"))
+    assert document["band"]["joint"].get("stated", True)
+    posterior = mc.load(tmp_path / "out" / "calibrated.yaml").posterior
+    assert posterior is not None
+    assert not posterior.stated
+    again = Study.from_yaml(tmp_path / "again.yaml").validate()
+    assert any("no bands: those of the study 'Test wall' are not stated" in text for text in again.remarks)
+    assert not again.bands

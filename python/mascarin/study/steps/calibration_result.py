@@ -84,6 +84,8 @@ class Calibrated:
                 for doubt in other.contradictions
                 if doubt.text not in known
             ]
+        if any(doubt.kind == "fit" for doubt in doubts):
+            intervals = replace(intervals, elsewhere=False)
         factor = widening(doubts)
         if factor > 1.0:
             fit = with_wider_intervals(fit, factor)
@@ -182,7 +184,7 @@ def building_with_posterior(
         weather,
         study=study.plan.name,
         days=int(np.unique(days[used]).size),
-        stated=intervals.stated,
+        stated=intervals.stated and intervals.elsewhere,
     )
 
 

@@ -174,6 +174,9 @@ class PredictionIntervals:
         of other forms of the model; 0 where none are estimated. [unit of each sensor]
     factor : float
         By which they were made wider for what contradicts the model; infinite where they are not stated. [-]
+    elsewhere : bool
+        Whether bands of other houses, seasons and phases follow from them: not where the calibrated model is
+        farther from its own data than the description.
     """
 
     confidence: float
@@ -183,6 +186,7 @@ class PredictionIntervals:
     coverage: dict[str, Array]
     center: Array
     factor: float = 1.0
+    elsewhere: bool = True
 
     @property
     def stated(self) -> bool:
