@@ -86,8 +86,8 @@ def _row(row: tuple[str, str]) -> str:
     """A name and a value; without a name, as for further values of the name above, there is no empty head."""
     name, value = map(html.escape, row)
     head = "th" if name else "td"
-    left = "style='text-align:left'"
-    return f"<tr><{head} {left}>{name}</{head}><td {left}>{value}</td></tr>"
+    style = "style='text-align:left'"
+    return f"<tr><{head} {style}>{name}</{head}><td {style}>{value}</td></tr>"
 
 
 def svg(figure: Figure) -> str:
