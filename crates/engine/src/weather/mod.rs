@@ -7,6 +7,7 @@ pub(crate) mod humidity;
 pub mod index;
 pub(crate) mod instant;
 pub(crate) mod mechanical_air;
+mod panes;
 pub(crate) mod solar_means;
 pub(crate) mod sun;
 pub(crate) mod sun_position;

@@ -15,9 +15,7 @@ from mascarin.building.base.part import Part
 NET_RADIATION = "EN 13363-2:2005 (radiation between a blind and the glass)"
 SHUTTER = "EN ISO 10077-1:2017, annex (additional resistance of closed shutters by the classes of EN 13125)"
 
-VENTILATED = (
-    "assumed: 0.4 to 0.55 by ISO 15099 for air at 0.2 to 0.3 m/s in a gap of 50 mm, 0.7 by EN 13363-1:2003"
-)
+VENTILATED = "0.4 to 0.55 by ISO 15099 for air at 0.2 to 0.3 m/s in a gap of 50 mm, 0.7 by EN 13363-1:2003"
 #: See `VENTILATED`, and the range that it leaves. [-]
 _TO_AIR: Final = 0.5
 _TO_AIR_RANGE: Final = (0.3, 0.7)
