@@ -43,6 +43,9 @@ NOT_STATED: Final = "not stated: the model contradicts the data of its own ident
 _MOST_STATED: Final = LARGEST_ERROR
 #: The same for combinations of numbers that are not estimated, of which there are many.
 _MOST_DESCRIBED: Final = 3.0
+#: Ratio of the errors of a calibrated model and of the description, below which they are equal: a description
+#: that is right already cannot be improved. [-]
+_FARTHER: Final = 1.01
 #: Probability below which a day, or the order of errors, is not as assumed.
 _RARE: Final = 1e-3
 #: Correlation of neighbours below which it is of no importance, however certain. [-]
@@ -205,12 +208,14 @@ def of_fit(
     'the calibrated model is farther from the data of its identification than the model as described'
     >>> of_fit({"room": 0.6, "gap": 6.7}, {"room": 0.7, "gap": 3.0}, {"room": 0.25, "gap": 0.25})
     []
+    >>> of_fit({"room": 0.600}, {"room": 0.603}, {"room": 0.25})
+    []
     """
     names = [name for name in described if stated.get(name, 0.0) > 0.0 and name in calibrated]
     before, after = (
         sum((errors[name] / stated[name]) ** 2 for name in names) for errors in (described, calibrated)
     )
-    if not after > before:
+    if not after > _FARTHER**2 * before:
         return []
     worst = max(names, key=lambda name: (calibrated[name] - described[name]) / stated[name])
     text = (
