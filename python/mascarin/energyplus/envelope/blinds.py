@@ -69,7 +69,7 @@ def _controlled(context: Context, item: IdfObject) -> Section | None:
         return None
     blind: Section = {"position": "inside" if inside else "outside"} | device_values(context, device)
     if inside:
-        # EnergyPlus computes the flow of this air. Its example files fit parts from 0.2 to 0.5: none is taken.
+        # EnergyPlus computes the flow of this air. Its example files fit 0.2 to 0.5: none is taken.
         blind["to_air"] = 0.0
     if kind in _BY_SUN:
         blind["radiation"] = item.number("setpoint") or 0.0
