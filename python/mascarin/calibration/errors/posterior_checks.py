@@ -222,7 +222,7 @@ def of_fit(
         "the calibrated model is farther from the data of its identification than the model as described: "
         f"{math.sqrt(after / before):.2f} times, most in {worst} (root mean square {described[worst]:.2g} as "
         f"described, {calibrated[worst]:.2g} calibrated). Errors of model and sensors explain what the "
-        "parameters do not: look for what the model lacks, or state a smaller discrepancy.limit"
+        "parameters do not: look at the causes of the remaining error, and for what the description lacks"
     )
     return [Contradiction("fit", worst, text)]
 
