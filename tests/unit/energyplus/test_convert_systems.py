@@ -239,3 +239,80 @@ def test_mixing_at_a_temperature_difference_is_controlled(tmp_path: Path, line: 
     assert control.difference is not None
     assert (float(control.difference.open), float(control.difference.close)) == (3.0, 3.0)
     assert set(path.between) == {"a", "b"}
+
+
+# ------------------------------------------------------------------ economizers
+
+IDEAL_END = "NoLimit,,,NoLimit,,,,,None,,None,oa;"
+ECONOMIZER = "NoLimit,,,NoLimit,,,,,None,,None,oa,,None,DifferentialDryBulb;"
+LIMITED = "NoLimit,,,LimitFlowRate,0.3,,,,None,,None,oa,,None,DifferentialDryBulb;"
+COOLER = ("cool26,any,26", "cool26,any,24")
+
+
+@pytest.mark.parametrize(
+    ("system", "theirs"), [(IDEAL_END, 119.4), (ECONOMIZER, 68.2), (LIMITED, 78.0)], ids=["no", "free", "0.3"]
+)
+def test_cooling_with_an_economizer_is_that_of_energyplus(
+    bench: Any, tmp_path: Path, system: str, theirs: float
+) -> None:
+    # "Zone Ideal Loads Supply Air Sensible Cooling Energy" of EnergyPlus 25.2 in May. [kWh]
+    conversion = changed(tmp_path, "mechanical_outdoor_air", (IDEAL_END, system), COOLER)
+    room = bench.simulated(conversion, start="2017-04-17", end="2017-06-01")["room"]
+    ours = room.loads["cooling"][-31 * 24 :].sum()
+    assert ours == pytest.approx(theirs, rel=0.025)
+    assert room.air.max() < 24.001
+
+
+def economizer_findings(conversion: Conversion) -> list[tuple[str, str]]:
+    return [(one.level, one.what) for one in conversion.findings if "economizer" in one.what]
+
+
+def test_an_economizer_has_a_law_beside_the_leaks(tmp_path: Path) -> None:
+    conversion = changed(tmp_path, "mechanical_outdoor_air", (IDEAL_END, LIMITED), COOLER)
+    room = conversion.description["zones"]["room"]
+    (leaks,) = (part for part in room["ventilation"].values() if "air_changes" in part)
+    assert leaks["air_changes"] == 0.5, "the constant infiltration of the file"
+    # 0.25 m3/s above the least flow, in 75 m3: 12 per hour.
+    assert room["infiltration"]["formula"].startswith("12*(min(max((Ti - 23.8)/0.2, 0), 1)")
+    assert economizer_findings(conversion) == [("approximated", "an economizer")]
+    enthalpy = changed(
+        tmp_path,
+        "mechanical_outdoor_air",
+        (IDEAL_END, LIMITED.replace("DryBulb", "Enthalpy")),
+    )
+    assert ("approximated", "an economizer by enthalpy") in economizer_findings(enthalpy)
+
+
+@pytest.mark.parametrize(
+    ("change", "levels"),
+    [
+        (("AirChanges/Hour,,,,0.5,1,0,0,0", "AirChanges/Hour,,,,0.5,1,0,0.1,0"), ["left out"]),
+        (("cool26,any,26", "cool26,any,20"), ["left out"]),
+        (("Flow/Zone,0,0,0.05", "Flow/Zone,0,0,0.4"), []),
+        (("dual,any,4", "dual,any,1"), []),
+    ],
+    ids=["leaks by wind", "no range", "flow above its limit", "no cooling"],
+)
+def test_an_economizer_that_is_no_law_is_listed(
+    tmp_path: Path, change: tuple[str, str], levels: list[str]
+) -> None:
+    conversion = changed(tmp_path, "mechanical_outdoor_air", (IDEAL_END, LIMITED), change)
+    assert [level for level, _ in economizer_findings(conversion)] == levels
+
+
+def test_an_economizer_follows_the_schedules_of_its_system_and_set_point(tmp_path: Path) -> None:
+    conversion = changed(
+        tmp_path,
+        "mechanical_outdoor_air",
+        (IDEAL_END, LIMITED),
+        (
+            "Schedule:Constant,cool26,any,26;",
+            "Schedule:Compact,cool26,any,Through: 12/31,For: AllDays,Until: 8:00,30,Until: 18:00,25,"
+            "Until: 24:00,30;",
+        ),
+    )
+    room = conversion.description["zones"]["room"]
+    assert "Ti - 24.8" in room["infiltration"]["formula"], "the lower set point"
+    schedule = conversion.description["schedules"][room["infiltration"]["schedule"]]
+    points = [(point["at"], point["value"]) for point in schedule["days"]["all"]]
+    assert points == [("00:00", 0), ("08:00", 1), ("18:00", 0)]

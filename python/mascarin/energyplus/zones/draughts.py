@@ -239,6 +239,39 @@ def _enter_law(context: Context, zone: Zone, group: list[Draught]) -> None:
     context.section("zones")[zone.name]["infiltration"] = held
 
 
+def enter_beside(context: Context, zone: Zone, draught: Draught) -> bool:
+    """Enter a flow with a law in a zone that has its other flows already.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    zone : Zone
+        The zone.
+    draught : Draught
+        The flow.
+
+    Returns
+    -------
+    bool
+        False where the infiltration of the zone has terms by temperature or wind, a schedule or a control, so
+        that one law cannot have both; nothing is entered then.
+    """
+    description = context.section("zones")[zone.name]
+    leaks = description.get("infiltration", {})
+    if leaks.keys() - {"constant", "density"}:
+        return False
+    if leaks.get("constant"):
+        # A constant flow is the same as ventilation: the law and its schedule have the section alone.
+        held = description.setdefault("ventilation", {})
+        held[context.names.new(f"ventilation of {zone.name}", "infiltration")] = {
+            "air_changes": leaks["constant"],
+            "density": leaks["density"],
+        }
+    _enter_law(context, zone, [draught])
+    return True
+
+
 def _enter_other(context: Context, zone: Zone, draught: Draught) -> None:
     """Enter a second flow that is driven: as an opening, or with its flow at a usual difference and wind."""
     schedule, most = fraction(context, f"{draught.item.name} flow", draught.values)
