@@ -348,7 +348,7 @@ def test_floors_that_overlap() -> None:
         "outside": {"soil": "beside"},
     }
     description["soil_blocks"]["beside"] = dict(description["soil_blocks"]["below"])
-    with pytest.raises(InputError, match="a floor that overlaps that of block 'below' by 2 m by 8 m"):
+    with pytest.raises(InputError, match="a floor that overlaps that of block 'below' in plan"):
         Building.from_dict(description)
 
 
@@ -363,3 +363,71 @@ def test_numbers_of_a_block_do_not_vary_in_a_compiled_run() -> None:
     assert "reduced once" in (parameter.reason or "")
     with pytest.raises(InputError, match="reduced once"):
         mc.jacobian(building(), climate(np.full(48, 5.0)), vary=["soil_blocks.below.conductivity"], step="1h")
+
+
+# --- sun and sky on the ground ------------------------------------------------------------------------------
+
+
+def sunny_climate(air: Any, sun: Any, infrared: Any) -> mc.Climate:
+    index = pd.date_range("2001-01-01", periods=len(air), freq="1h", tz="Etc/GMT-1")
+    absent = ["dew_point", "wind_speed", "wind_direction"]
+    table = pd.DataFrame({"T": air, "G": sun, "D": sun, "B": np.zeros(len(sun)), "L": infrared}, index=index)
+    columns = {
+        "air_temperature": "T",
+        "global_horizontal": "G",
+        "diffuse_horizontal": "D",
+        "direct_normal": "B",
+        "infrared": "L",
+    }
+    return mc.Climate.from_table(table, columns=columns, absent=absent)
+
+
+def test_sun_and_sky_on_the_ground_act_as_warmer_air() -> None:
+    """Sol-air temperature, typed here: T + (a G + e (L - sigma T^4))/h. The mean of a year and its course."""
+    hours = np.arange(8760)
+    swing = -np.cos(2.0 * np.pi * hours / 8760.0)
+    air = 8.0 + 10.0 * swing + 3.0 * np.sin(2.0 * np.pi * hours / 24.0)
+    sun = np.where((hours % 24 >= 11) & (hours % 24 < 14), 300.0 + 200.0 * swing, 0.0)
+    infrared = 290.0 + 50.0 * swing
+    # The film of the block is 20; air at the end of an hour, radiation as the mean of it.
+    excess = (0.7 * sun + 0.95 * (infrared - 5.670374419e-8 * (air + 273.15) ** 4)) / 20.0
+    assert abs(excess.mean()) > 1.0
+    house = Building.from_dict(held(tree(before=None, absorptance=0.7, emissivity=0.95)))
+    plain = Building.from_dict(held(tree(before=None)))
+    loads = [
+        mc.simulate(case, weather, step="1h", outputs=["room.net_load"]).to_dataframe()["room.net_load"]
+        for case, weather in (
+            (house, sunny_climate(air, sun, infrared)),
+            (plain, climate(air + excess)),
+            (plain, climate(air)),
+        )
+    ]
+    assert (loads[0] - loads[1]).abs().max() < 0.02 * (loads[0] - loads[2]).abs().max()
+    assert loads[0].mean() == pytest.approx(loads[1].mean(), abs=1e-3 * abs(loads[2].mean()))
+
+
+def test_what_sun_on_the_ground_needs() -> None:
+    description = tree(absorptance=0.8)
+    description["weather"] = {"columns": {"infrared": {"offset": 5.0}}}
+    with pytest.raises(InputError, match="a corrected infrared beside a block of soil"):
+        Building.from_dict(description)
+    with pytest.raises(InputError, match="absorptance"):
+        building(absorptance=1.2)
+    assert building(absorptance=0.8).soil_blocks["below"].radiation == (0.8, 0.9, 20.0)
+    assert building().soil_blocks["below"].radiation is None
+
+
+def test_floors_beside_each_other_that_are_no_rectangles() -> None:
+    """Bounding boxes of two trapezoids overlap, the floors do not."""
+    description = tree()
+    floor = description["surfaces"]["floor"]
+    del floor["area"], floor["tilt"]
+    floor["vertices"] = [[0, 0, 0], [2, 2, 0], [8, 2, 0], [10, 0, 0]]
+    description["zones"]["next"] = dict(description["zones"]["room"])
+    description["surfaces"]["second"] = floor | {
+        "vertices": [[0, 0, 0], [0, 10, 0], [2, 8, 0], [2, 2, 0]],
+        "inside": floor["inside"] | {"zone": "next"},
+        "outside": {"soil": "beside"},
+    }
+    description["soil_blocks"]["beside"] = dict(description["soil_blocks"]["below"])
+    assert len(Building.from_dict(description).soil_blocks) == 2

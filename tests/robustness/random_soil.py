@@ -46,6 +46,11 @@ def add(draw: Draw, tree: Json) -> None:
         }
     if draw.chance(0.3):
         block |= {"inside_film": draw.number(1.0, 10.0), "outdoor_film": draw.number(5.0, 50.0)}
+        if block["outdoor_film"] < 20.0:
+            block |= {
+                "absorptance": block["outdoor_film"] / 20.0,
+                "emissivity": 1.0 - block["outdoor_film"] / 50.0,
+            }
     if draw.chance(0.3):
         block["source"] = "soil survey"
     surface = tree["surfaces"][draw.one(may)]

@@ -395,6 +395,8 @@ SOIL: dict[str, Any] = {
             "heat_capacity": 2.5e6,
             "inside_film": 4,
             "outdoor_film": 20,
+            "absorptance": 0.7,
+            "emissivity": 0.92,
             "far": 5,
             "depth": 5,
             "deep_temperature": 14,

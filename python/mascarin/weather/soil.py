@@ -1,4 +1,4 @@
-"""What the outdoor air gives to a block of soil at the stages of every step."""
+"""What outdoor air, sun and sky give to a block of soil at the stages of every step."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.errors import InputError
+from mascarin.physics import KELVIN, STEFAN_BOLTZMANN
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import clock
-from mascarin.weather.forcing import channel_values
+from mascarin.weather.checks.missing_infrared import sky_emission
+from mascarin.weather.forcing import channel_values, column_means
 
 if TYPE_CHECKING:
     from mascarin.building.soil.courses import SoilCourse
@@ -42,11 +44,11 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
         return np.full((len(steps.edges) - 1, 1), course.behind)
     from mascarin.building.soil.response import heat_of_outdoors
 
-    hours, air = _hourly(climate, steps)
-    if course.before is None and len(air) < _YEAR:
+    hours, outdoors = _hourly(climate, steps, course.radiation)
+    if course.before is None and len(outdoors) < _YEAR:
         raise InputError(
-            f"soil_blocks.{course.block}.before: found {len(air) / 24.0:.0f} days of weather and no outdoor "
-            "air before; expected a year of weather, or the yearly mean of the years before it. Write "
+            f"soil_blocks.{course.block}.before: found {len(outdoors) / 24.0:.0f} days of weather and no "
+            "outdoor air before; expected a year of weather, or the yearly mean of the years before it. Write "
             "'before: {mean: 10, amplitude: 8, coldest_day: 15}'"
         )
     before = course.before
@@ -54,7 +56,7 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
         before = (before[0] - course.behind, *before[1:])
     heat = heat_of_outdoors(
         course.ladder,
-        np.asarray(air - course.behind, dtype=np.float64),
+        np.asarray(outdoors - course.behind, dtype=np.float64),
         before,
         _day_of_year(climate, steps.first + float(hours[0])),
     )
@@ -62,8 +64,10 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
     return np.asarray(np.interp(middles, hours, heat[:, course.cell])[:, None])
 
 
-def _hourly(climate: Climate, steps: Steps) -> tuple[Array, Array]:
-    """Ends of hours, from the start of a run [s], and the outdoor air at them. [degC]
+def _hourly(
+    climate: Climate, steps: Steps, radiation: tuple[float, float, float] | None
+) -> tuple[Array, Array]:
+    """Ends of hours, from the start of a run [s], and the temperature that acts outdoors there. [degC]
 
     From the beginning of the weather on; a typical year begins a year before the run.
     """
@@ -75,11 +79,37 @@ def _hourly(climate: Climate, steps: Steps) -> tuple[Array, Array]:
         count = max(count, min(_YEAR, int((grid.end - first) // _HOUR)))
     edges = _HOUR * np.arange(count + 1)
     hours = Steps(first, first + float(edges[-1]), edges, edges[1:, None], (1.0,))
-    air = channel_values(climate.record, "air_temperature", hours)[:, 0]
-    finite = np.isfinite(air)
-    if not finite.all():
-        air = np.interp(edges[1:], edges[1:][finite], air[finite])
-    return np.asarray(edges[1:] + (first - steps.first)), np.asarray(air, dtype=np.float64)
+    air = _whole(channel_values(climate.record, "air_temperature", hours)[:, 0])
+    ends = np.asarray(edges[1:] + (first - steps.first))
+    return ends, air if radiation is None else air + _excess(climate, hours, air, radiation)
+
+
+def _excess(climate: Climate, hours: Steps, air: Array, radiation: tuple[float, float, float]) -> Array:
+    """What sun and sky add to the temperature that acts on the ground: the sol-air temperature. [K]
+
+    The ground gives off heat by its film, which is linear about the air: with it, the net radiation of a
+    ground at the temperature of the air has the effect of warmer air (ASHRAE Handbook of Fundamentals 2017,
+    chapter 18: sol-air temperature).
+    """
+    absorptance, emissivity, film = radiation
+    sun = _whole(column_means(climate.record, "global_horizontal", hours))
+    sky = channel_values(climate.record, "infrared", hours)[:, 0]
+    if np.isnan(sky).any():
+        dew_point, cloud_cover = (
+            _whole(channel_values(climate.record, name, hours)[:, 0]) for name in ("dew_point", "cloud_cover")
+        )
+        sky = np.where(np.isnan(sky), sky_emission(air, dew_point, cloud_cover), sky)
+    net = absorptance * np.maximum(sun, 0.0) + emissivity * (sky - STEFAN_BOLTZMANN * (air + KELVIN) ** 4)
+    return np.asarray(net / film)
+
+
+def _whole(values: Array) -> Array:
+    """Values with what is missing between others."""
+    finite = np.isfinite(values)
+    if finite.all():
+        return np.asarray(values, dtype=np.float64)
+    place = np.arange(values.size)
+    return np.asarray(np.interp(place, place[finite], values[finite]), dtype=np.float64)
 
 
 def _day_of_year(climate: Climate, seconds: float) -> float:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from itertools import combinations
 from typing import TYPE_CHECKING, Final
 
 from mascarin.building.base.part import fault
+from mascarin.building.geometry import Polygon
+from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
@@ -103,25 +106,29 @@ def _apart(building: Description, on: dict[str, list[str]]) -> Iterator[InitErro
     for name, surfaces in on.items():
         vertices = building.surfaces[surfaces[0]].vertices if surfaces else None
         if vertices is not None:
-            points = [tuple(float(value) for value in vertex) for vertex in vertices]
-            outlines[name] = [(min(p[k] for p in points), max(p[k] for p in points)) for k in (0, 1)]
+            plan = [(float(x), float(y), 0.0) for x, y, _ in vertices]
+            # A surface with corners that are no outline has its own error.
+            with contextlib.suppress(InputError):
+                outlines[name] = Polygon.of(name, plan)
     for (block, first), (other, second) in combinations(outlines.items(), 2):
-        common = [min(a[1], b[1]) - max(a[0], b[0]) for a, b in zip(first, second, strict=True)]
-        if min(common) > _SAME:
+        if first.overlaps(second):
             yield fault(
                 ("soil_blocks", other),
-                f"a floor that overlaps that of block '{block}' by {common[0]:g} m by {common[1]:g} m",
+                f"a floor that overlaps that of block '{block}' in plan",
                 "floors beside each other",
                 "Correct the vertices; floors of one zone are one surface on one block.",
             )
 
 
 def _weather_as_read(building: Description) -> Iterator[InitErrorDetails]:
-    corrected = building.weather is not None and "air_temperature" in building.weather.columns
-    if building.soil_blocks and corrected:
+    corrected = set() if building.weather is None else set(building.weather.columns)
+    used = {"air_temperature"} if building.soil_blocks else set()
+    if any(block.absorptance is not None for block in building.soil_blocks.values()):
+        used |= {"global_horizontal", "direct_normal", "diffuse_horizontal", "infrared"}
+    for column in sorted(corrected & used):
         yield fault(
-            ("weather", "columns", "air_temperature"),
-            "a corrected air temperature beside a block of soil",
-            "the air temperature as it was read: the soil remembers that of years",
+            ("weather", "columns", column),
+            f"a corrected {column.replace('_', ' ')} beside a block of soil",
+            "the column as it was read: the soil remembers that of years",
             "Correct the column in the weather file, or describe the floor with 'ground:'.",
         )

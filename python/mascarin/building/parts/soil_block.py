@@ -12,6 +12,8 @@ from mascarin.building.quantities import soil as q
 
 #: Films of the ground outdoors and of a floor: 1/0.04 and 1/0.17.
 _FILMS = "ISO 6946:2017, table 7, downward heat flow"
+#: Dry and wet soils have 0.9 to 0.95.
+_EMISSIVITY = "Oke 1987, Boundary Layer Climates, table 1.1: soils 0.90 to 0.98; the lower end"
 _EXTENT = "Neymark and Judkoff 2008, NREL/TP-550-43388: 15 m in most of the cases"
 
 
@@ -77,6 +79,14 @@ class SoilBlock(Part):
     heat_capacity: q.SoilHeatCapacity
     inside_film: q.SoilFilm = Number(1.0 / 0.17, source=Remark(_FILMS), assumed=True)
     outdoor_film: q.SoilFilm = Number(1.0 / 0.04, source=Remark(_FILMS), assumed=True)
+    absorptance: Annotated[
+        q.GroundAbsorptance | None,
+        Field(
+            description="Part of the sun that the ground outdoors absorbs; none: the temperature of the air "
+            "acts, without sun and sky"
+        ),
+    ] = None
+    emissivity: q.GroundEmissivity = Number(0.9, source=Remark(_EMISSIVITY), assumed=True)
     far: q.SoilExtent = Number(15.0, source=Remark(_EXTENT), assumed=True)
     depth: q.SoilExtent = Number(15.0, source=Remark(_EXTENT), assumed=True)
     deep_temperature: Annotated[
@@ -99,6 +109,13 @@ class SoilBlock(Part):
             return None
         length, width = float(self.length), float(self.width)
         return length * width + 2.0 * (length + width) * float(self.basement_depth)
+
+    @property
+    def radiation(self) -> tuple[float, float, float] | None:
+        """Absorptance and emissivity of the ground outdoors [-], and its film [W/(m2 K)]; None: only air."""
+        if self.absorptance is None:
+            return None
+        return float(self.absorptance), float(self.emissivity), float(self.outdoor_film)
 
     @property
     def behind(self) -> float:

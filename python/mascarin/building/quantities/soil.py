@@ -42,6 +42,14 @@ SoilFilm = Annotated[
         "W/(m2 K)", "Heat transfer coefficient, radiation included", Limits(at_least=0.5, at_most=1e5)
     ),
 ]
+GroundAbsorptance = Annotated[
+    Number,
+    _structural("-", "Part of the sun that the ground outdoors absorbs", Limits(at_least=0.0, at_most=1.0)),
+]
+GroundEmissivity = Annotated[
+    Number,
+    _structural("-", "Emissivity of the ground outdoors", Limits(at_least=0.0, at_most=1.0)),
+]
 SoilExtent = Annotated[Number, _structural("m", "Extent of the soil", Limits(at_least=1.0, at_most=200.0))]
 DeepTemperature = Annotated[Number, _structural("degC", "Temperature of the deep soil", TEMPERATURE)]
 OutdoorMean = Annotated[Number, _structural("degC", "Yearly mean of the outdoor air", TEMPERATURE)]

@@ -34,7 +34,10 @@ class SoilCourse:
     behind : float
         Temperature behind the outermost cell. [degC]
     before : (float, float, float) or None
-        Mean, amplitude and coldest day of the outdoor air before the weather begins. [degC], [K], [d]
+        Mean, amplitude and coldest day of what acts outdoors before the weather begins. [degC], [K], [d]
+    radiation : (float, float, float) or None
+        Absorptance and emissivity of the ground outdoors [-], and its film [W/(m2 K)]; None where the
+        temperature of the air acts alone.
     """
 
     block: str
@@ -43,6 +46,7 @@ class SoilCourse:
     geometry: SoilGeometry
     behind: float
     before: tuple[float, float, float] | None
+    radiation: tuple[float, float, float] | None = None
 
     @property
     def name(self) -> str:
@@ -108,5 +112,5 @@ def _courses(building: Description, surface: str, name: str) -> Iterator[SoilCou
         None if before is None else (float(before.mean), float(before.amplitude), float(before.coldest_day))
     )
     for cell in (0, 1):
-        yield SoilCourse(name, "heat_flux", cell, geometry, block.behind, years)
+        yield SoilCourse(name, "heat_flux", cell, geometry, block.behind, years, block.radiation)
     yield SoilCourse(name, "temperature", 0, geometry, block.behind, years)

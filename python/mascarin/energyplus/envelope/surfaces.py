@@ -10,6 +10,7 @@ from typing import Any, Final
 from mascarin.building.geometry import Polygon
 from mascarin.energyplus.envelope.constructions import construction
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
+from mascarin.energyplus.envelope.foundations import foundation
 from mascarin.energyplus.envelope.glazings import construction_of
 from mascarin.energyplus.envelope.idf_surfaces import IdfSurface
 from mascarin.energyplus.envelope.materials import layers_of, skin
@@ -152,6 +153,9 @@ def _outside(
         return held_at(context, f"ground {kind}", ground(context, kind)), False
     if boundary == "othersidecoefficients":
         return _other_side(context, surface)
+    soil = foundation(context, surface, by_name.values()) if boundary == "foundation" else None
+    if soil is not None:
+        return soil, False
     if boundary in _OTHER_GROUND:
         context.findings.left_out(
             item,

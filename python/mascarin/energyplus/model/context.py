@@ -133,6 +133,8 @@ class Context:
         Sources of vapour.
     special_days : dict of str to bool
         Whether the weather file has ``daylight saving`` and ``holidays``; empty without a weather file.
+    yearly_air : float or None
+        Yearly mean of the outdoor air; None without a weather file. [degC]
     """
 
     model: IdfModel
@@ -146,6 +148,7 @@ class Context:
     moist: dict[str, bool] = field(default_factory=dict)
     vapour: list[Vapour] = field(default_factory=list)
     special_days: dict[str, bool] = field(default_factory=dict)
+    yearly_air: float | None = None
 
     def section(self, name: str) -> Section:
         """A section of the description.

@@ -36,6 +36,8 @@ _SAME_PLACE: Final = (1.0, 1.0, 100.0, 0.0)
 #: Lines before the data of a weather file, and bytes in which they are.
 _HEADER_LINES: Final = 8
 _HEADER_BYTES: Final = 65_536
+#: Column of the air temperature, from 0.
+_AIR: Final = 6
 #: Temperature of the ground where the file gives none, as in EnergyPlus [degC].
 _GROUND: Final = 18.0
 
@@ -51,7 +53,9 @@ def describe_site(context: Context, weather: Path | None) -> None:
     """
     site = context.section("site")
     site |= _location(context, weather)
-    context.special_days |= {} if weather is None else _special_days(weather)
+    if weather is not None:
+        context.special_days |= _special_days(weather)
+        context.yearly_air = _yearly_air(weather)
     reflectance = _monthly(context.model.one("Site:GroundReflectance"), "ground_reflectance")
     if reflectance is not None:
         mean = sum(v * n for v, n in zip(reflectance, _LENGTHS, strict=True)) / 365.0
@@ -106,6 +110,14 @@ def _special_days(path: Path) -> dict[str, bool]:
         if cells[0].upper() == "HOLIDAYS/DAYLIGHT SAVINGS" and len(cells) > 4:
             return {"daylight saving": cells[2] != "0", "holidays": cells[4] != "0"}
     return {}
+
+
+def _yearly_air(path: Path) -> float | None:
+    """Mean of the outdoor air over a weather file; None if it has none. [degC]"""
+    rows = content(require_regular(path)).decode("latin-1").splitlines()[_HEADER_LINES:]
+    cells = [row.split(",", _AIR + 1) for row in rows]
+    values = [float(row[_AIR]) for row in cells if len(row) > _AIR and row[_AIR].strip() not in ("", "99.9")]
+    return sum(values) / len(values) if values else None
 
 
 def _head(path: Path) -> list[str]:
