@@ -431,3 +431,16 @@ def test_floors_beside_each_other_that_are_no_rectangles() -> None:
     }
     description["soil_blocks"]["beside"] = dict(description["soil_blocks"]["below"])
     assert len(Building.from_dict(description).soil_blocks) == 2
+
+
+def test_a_year_as_the_first_period_is_repeated_until_it_stays() -> None:
+    """Soil that is moved between repetitions comes back to the same end of a year: no circle, but the end."""
+    hours = np.arange(8760)
+    year = climate(8.0 - 10.0 * np.cos(2.0 * np.pi * hours / 8760.0))
+    house = building(before=None, deep_temperature=10.0)
+    run = mc.simulate(house, year, step="2h", outputs=["room.air_temperature"], first_period="365d")
+    repetitions = re.search(r"repeated (\d+) times", run.provenance.start)
+    assert repetitions is not None
+    assert int(repetitions[1]) <= 5
+    air = run.to_dataframe()["room.air_temperature"].to_numpy()
+    assert air[0] == pytest.approx(air[-1], abs=0.02)

@@ -48,8 +48,8 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
     if course.before is None and len(outdoors) < _YEAR:
         raise InputError(
             f"soil_blocks.{course.block}.before: found {len(outdoors) / 24.0:.0f} days of weather and no "
-            "outdoor air before; expected a year of weather, or the yearly mean of the years before it. Write "
-            "'before: {mean: 10, amplitude: 8, coldest_day: 15}'"
+            "outdoor air before; expected a year of weather, or the yearly mean of the years before it. "
+            "Write 'before: {mean: 10, amplitude: 8, coldest_day: 15}'"
         )
     before = course.before
     if before is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -37,7 +36,7 @@ def converted(
     *changes: tuple[str, str],
     foundation: str = PLAIN,
     exposed: str = EXPOSED,
-    weather: os.PathLike[str] | None = None,
+    weather: Path | None = None,
     name: str = "base_ideal",
 ) -> Conversion:
     """The plain box with a slab of concrete on a foundation."""

@@ -27,21 +27,24 @@ const SAME: [f64; 2] = [1e-5, 1e-4];
 
 /// A state that was reached before, to see where the repetitions go round in a circle: a control that switches may come back to where
 /// it was after some periods, and never to the start of one. The state is replaced after 1, 2, 4, ... repetitions, so that a circle of any
-/// length is seen (Brent 1980, doi:10.1007/BF01933190).
+/// length is seen (Brent 1980, doi:10.1007/BF01933190). A state that is that of the repetition just before is no circle, but what the
+/// repetitions converge to: soil is moved between them.
 struct Circle<S: Real> {
     tolerance: f64,
     before: State<S>,
+    /// The repetition after which the state was remembered.
+    since: usize,
     numbers: Vec<S>,
 }
 
 impl<S: Real> Circle<S> {
     fn new(state: &State<S>, tolerance: f64) -> Self {
-        Self { tolerance, before: state.clone(), numbers: Vec::new() }
+        Self { tolerance, before: state.clone(), since: 0, numbers: Vec::new() }
     }
 
     /// The lanes in which the state after a repetition, counted from 1, is one that was reached before.
     fn comes_back(&mut self, state: &State<S>, cycle: usize) -> S::Mask {
-        let mut same = S::Mask::splat(true);
+        let mut same = S::Mask::splat(cycle > self.since + 1);
         self.numbers.clear();
         self.before.write(&mut self.numbers);
         state.zip_with(&self.numbers, |now, before| {
@@ -50,6 +53,7 @@ impl<S: Real> Circle<S> {
         });
         if cycle.is_power_of_two() {
             self.before.copy_from(state);
+            self.since = cycle;
         }
         same
     }
@@ -241,6 +245,8 @@ mod tests {
     fn a_circle_is_seen_and_a_slow_decay_is_none() {
         let turning = (1..).zip(powers(0.5)).map(|(cycle, decay)| f64::from(cycle % 7) + 5.0 * decay);
         assert_eq!(circle(0.01, turning), Some(32 + 7));
+        let back_and_forth = (1..).map(|cycle| f64::from(cycle % 2));
+        assert_eq!(circle(0.01, back_and_forth), Some(4));
         for tolerance in [1e-2, 1e-9] {
             for factor in [0.98, -0.9] {
                 let seen = circle(tolerance, powers(factor).map(|decay| 20.0 + decay));

@@ -66,7 +66,7 @@ def foundation(context: Context, surface: IdfSurface, surfaces: Iterable[IdfSurf
     if exposed is None:
         return None
     item = context.model.named(surface.beyond, "Foundation:Kiva")
-    block = _plan(surface, exposed) | _soil(context)
+    block = _plan(surface, exposed) | _soil(context, surface)
     block |= _structure(context, item)
     # As deep as the block needs below its insulation.
     lowest = block["edge"]["extent"] if block.get("edge", {}).get("position") == "vertical" else 0.0
@@ -116,7 +116,7 @@ def _plan(surface: IdfSurface, exposed: float) -> Section:
 
 
 @reads("Foundation:Kiva:Settings")
-def _soil(context: Context) -> Section:
+def _soil(context: Context, surface: IdfSurface) -> Section:
     """Properties of the soil and of the ground outdoors, and what lies below."""
     item = context.model.one("Foundation:Kiva:Settings")
 
@@ -144,7 +144,7 @@ def _soil(context: Context) -> Section:
         soil["deep_temperature"] = round(context.yearly_air, 3)
     elif boundary == "groundwater":
         context.findings.approximated(
-            context.model.one("Building") if item is None else item,
+            surface.item if item is None else item,
             "ground water at the yearly mean of the outdoor air",
             "no heat passes the bottom of the soil: give the weather file with --weather",
         )
