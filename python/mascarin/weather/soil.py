@@ -79,7 +79,7 @@ def _hourly(
         count = max(count, min(_YEAR, int((grid.end - first) // _HOUR)))
     edges = _HOUR * np.arange(count + 1)
     hours = Steps(first, first + float(edges[-1]), edges, edges[1:, None], (1.0,))
-    air = _whole(channel_values(climate.record, "air_temperature", hours)[:, 0])
+    air = _without_gaps(channel_values(climate.record, "air_temperature", hours)[:, 0])
     ends = np.asarray(edges[1:] + (first - steps.first))
     return ends, air if radiation is None else air + _excess(climate, hours, air, radiation)
 
@@ -92,24 +92,25 @@ def _excess(climate: Climate, hours: Steps, air: Array, radiation: tuple[float, 
     chapter 18: sol-air temperature).
     """
     absorptance, emissivity, film = radiation
-    sun = _whole(column_means(climate.record, "global_horizontal", hours))
+    sun = _without_gaps(column_means(climate.record, "global_horizontal", hours))
     sky = channel_values(climate.record, "infrared", hours)[:, 0]
     if np.isnan(sky).any():
         dew_point, cloud_cover = (
-            _whole(channel_values(climate.record, name, hours)[:, 0]) for name in ("dew_point", "cloud_cover")
+            _without_gaps(channel_values(climate.record, name, hours)[:, 0])
+            for name in ("dew_point", "cloud_cover")
         )
         sky = np.where(np.isnan(sky), sky_emission(air, dew_point, cloud_cover), sky)
     net = absorptance * np.maximum(sun, 0.0) + emissivity * (sky - STEFAN_BOLTZMANN * (air + KELVIN) ** 4)
     return np.asarray(net / film)
 
 
-def _whole(values: Array) -> Array:
+def _without_gaps(values: Array) -> Array:
     """Values with what is missing between others."""
     finite = np.isfinite(values)
     if finite.all():
         return np.asarray(values, dtype=np.float64)
-    place = np.arange(values.size)
-    return np.asarray(np.interp(place, place[finite], values[finite]), dtype=np.float64)
+    index = np.arange(values.size)
+    return np.asarray(np.interp(index, index[finite], values[finite]), dtype=np.float64)
 
 
 def _day_of_year(climate: Climate, seconds: float) -> float:

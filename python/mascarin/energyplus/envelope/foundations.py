@@ -189,8 +189,8 @@ def _structure(context: Context, item: IdfObject | None) -> Section:
         }
     if item.number("wall_depth_below_slab"):
         context.findings.approximated(item, "a wall below the slab", "soil in its place")
-    left = ("interior_vertical_insulation", "exterior_horizontal_insulation", "footing", "custom_block_1")
-    for key in left:
+    unknown = ("interior_vertical_insulation", "exterior_horizontal_insulation", "footing", "custom_block_1")
+    for key in unknown:
         if item.text(f"{key}_material_name"):
             context.findings.left_out(
                 item, key.replace("_", " "), "the soil has its place: other heat at the edge of the floor"
