@@ -444,3 +444,9 @@ def test_a_year_as_the_first_period_is_repeated_until_it_stays() -> None:
     assert int(repetitions[1]) <= 5
     air = run.to_dataframe()["room.air_temperature"].to_numpy()
     assert air[0] == pytest.approx(air[-1], abs=0.02)
+
+
+def test_sun_on_the_ground_without_the_sky_is_refused() -> None:
+    year = climate(np.full(8760, 5.0))
+    with pytest.raises(InputError, match="no infrared radiation of the sky in all hours"):
+        mc.simulate(building(before=None, absorptance=0.8), year, step="1h")

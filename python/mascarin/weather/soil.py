@@ -95,11 +95,15 @@ def _excess(climate: Climate, hours: Steps, air: Array, radiation: tuple[float, 
     sun = _without_gaps(column_means(climate.record, "global_horizontal", hours))
     sky = channel_values(climate.record, "infrared", hours)[:, 0]
     if np.isnan(sky).any():
-        dew_point, cloud_cover = (
-            _without_gaps(channel_values(climate.record, name, hours)[:, 0])
-            for name in ("dew_point", "cloud_cover")
-        )
-        sky = np.where(np.isnan(sky), sky_emission(air, dew_point, cloud_cover), sky)
+        needed = ("dew_point", "cloud_cover")
+        if any(climate.record.columns.get(name) is None for name in needed):
+            raise InputError(
+                f"{climate.record.file}: found no infrared radiation of the sky in all hours, and no dew point "
+                "and cloud cover to estimate it; expected it where a block of soil has 'absorptance'. Give the "
+                "column infrared, or remove 'absorptance' from soil_blocks"
+            )
+        dew_point, cloud_cover = (channel_values(climate.record, name, hours)[:, 0] for name in needed)
+        sky = _without_gaps(np.where(np.isnan(sky), sky_emission(air, dew_point, cloud_cover), sky))
     net = absorptance * np.maximum(sun, 0.0) + emissivity * (sky - STEFAN_BOLTZMANN * (air + KELVIN) ** 4)
     return np.asarray(net / film)
 
@@ -107,7 +111,7 @@ def _excess(climate: Climate, hours: Steps, air: Array, radiation: tuple[float, 
 def _without_gaps(values: Array) -> Array:
     """Values with what is missing between others."""
     finite = np.isfinite(values)
-    if finite.all():
+    if finite.all() or not finite.any():
         return np.asarray(values, dtype=np.float64)
     index = np.arange(values.size)
     return np.asarray(np.interp(index, index[finite], values[finite]), dtype=np.float64)
