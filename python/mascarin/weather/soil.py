@@ -98,9 +98,9 @@ def _excess(climate: Climate, hours: Steps, air: Array, radiation: tuple[float, 
         needed = ("dew_point", "cloud_cover")
         if any(climate.record.columns.get(name) is None for name in needed):
             raise InputError(
-                f"{climate.record.file}: found no infrared radiation of the sky in all hours, and no dew point "
-                "and cloud cover to estimate it; expected it where a block of soil has 'absorptance'. Give the "
-                "column infrared, or remove 'absorptance' from soil_blocks"
+                f"{climate.record.file}: found no infrared radiation of the sky in all hours, and no dew "
+                "point and cloud cover to estimate it; expected it where a block of soil has 'absorptance'. "
+                "Give the column infrared, or remove 'absorptance' from soil_blocks"
             )
         dew_point, cloud_cover = (channel_values(climate.record, name, hours)[:, 0] for name in needed)
         sky = _without_gaps(np.where(np.isnan(sky), sky_emission(air, dew_point, cloud_cover), sky))
