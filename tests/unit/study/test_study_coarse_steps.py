@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from mascarin.simulation.preparation.parameter_vectors import VectorRuns
 from mascarin.study import Study
 from mascarin.study.context.step_cache import kept_series
 from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.error_model import RANGES, effects_of_unknowns, unknowns
 from mascarin.study.steps.model_runs import ModelRuns
 from mascarin.study.steps.parameter_effects import Effects
 from study_support import BUILDING, STUDY, Bench, logger_table
-
 
 @pytest.fixture(scope="module")
 def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
@@ -67,3 +70,50 @@ def test_effects_with_the_long_step_are_those_of_the_short_one(bench: Bench) -> 
     largest = max(np.abs(one).max() for one in fine.values())
     assert largest > 0.5
     assert max(np.abs(fine[path] - coarse[path]).max() for path in fine) < 0.05 * largest
+
+
+def test_unknown_numbers_take_the_long_step_in_the_identification_too(bench: Bench) -> None:
+    found = []
+    for step in ("30min", "1h"):
+        context = opened(bench, step).context
+        simulation = context.models.for_calibration()
+        coarse = context.models.with_coarse_step(simulation)
+        assert (coarse is simulation) == (step == "30min")
+        assert (coarse.start, coarse.end) == (simulation.start, simulation.end)
+        seen = context.observation
+        rows = seen.during(context.periods.identification[0], context.periods.identification[1])
+        part = replace(seen, times=seen.times[rows], measured=seen.measured[rows])
+        numbers = unknowns(context, simulation, set(context.problem().paths))
+        found.append(effects_of_unknowns(context, part, simulation, simulation.vector({}), numbers))
+        assert {"site.sky.depression", "materials.brick.density"} <= {number.path for number in numbers}
+    fine, coarse_effects = found
+    largest = np.abs(fine).max()
+    assert largest > 0.1
+    # The last half hour is after the end of the last whole step of one hour.
+    assert np.abs(fine - coarse_effects)[:-1].max() < 0.05 * largest
+
+
+def test_steps_that_need_the_same_runs_share_them(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    context = opened(bench, "1h").context
+    simulation, count = context.models.nominal, []
+    base = simulation.vector({})
+    numbers = unknowns(context, simulation, set())
+    ensemble = VectorRuns.ensemble
+
+    def counted(self: VectorRuns, vectors: np.ndarray, **options: Any) -> Any:
+        count.append(len(vectors))
+        return ensemble(self, vectors, **options)
+
+    monkeypatch.setattr(VectorRuns, "ensemble", counted)
+    with Workspace(tmp_path / "work", context.identity()) as workspace, context.keeping(workspace):
+        effects = effects_of_unknowns(context, context.observation, simulation, base, numbers)
+        assert sum(count) == len(numbers) + 1
+        found = dict(Effects(context, simulation, np.zeros(0), base).each(lambda done, of: None))
+        # The depth of the sensor alone: its uncertainty is not stated, so that bands do not have it.
+        assert sum(count) == len(numbers) + 1 + 1
+    for k, number in enumerate(numbers):
+        # `Effects` are those of the whole range, and leave out numbers without effect.
+        own = RANGES * found.get(number.path, np.zeros(effects.shape[:2]))
+        assert own == pytest.approx(effects[:, :, k], abs=1e-12)
