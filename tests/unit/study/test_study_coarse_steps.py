@@ -19,6 +19,7 @@ from mascarin.study.steps.model_runs import ModelRuns
 from mascarin.study.steps.parameter_effects import Effects
 from study_support import BUILDING, STUDY, Bench, logger_table
 
+
 @pytest.fixture(scope="module")
 def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
     folder = tmp_path_factory.mktemp("bench")
