@@ -54,7 +54,7 @@ def matching(pattern: str, paths: Iterable[str], *, parts: bool = False) -> list
 
 
 @lru_cache(maxsize=256)
-def _expression(pattern: str, parts: bool) -> re.Pattern[str]:  # noqa: FBT001 (a key of the cache)
+def _expression(pattern: str, parts: bool) -> re.Pattern[str]:
     """What fits a pattern as `fits` has it, step by step; with `parts` the beginning of a path."""
     wild = {"*": "[^.]*", "?": "[^.]"}
     text = "".join(wild.get(letter) or re.escape(letter) for letter in pattern)
