@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -29,10 +28,11 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
     return Bench(folder)
 
 
-def opened(bench: Bench, step: str) -> Study:
-    """The study with a step of the sensitivity analysis."""
-    path = bench.folder / f"study-{step}.yaml"
-    path.write_text(STUDY.replace("interval: 1h", f"interval: 1h, step: {step}"), "utf-8")
+def opened(bench: Bench, step: str, identified: str = "") -> Study:
+    """The study with a step of the sensitivity analysis, and a further line of the identification."""
+    path = bench.folder / f"study-{step}{'-errors' if identified else ''}.yaml"
+    text = STUDY.replace("interval: 1h", f"interval: 1h, step: {step}")
+    path.write_text(text.replace("  starts: 2\n", f"  starts: 2\n{identified}"), "utf-8")
     return Study.from_yaml(path)
 
 
@@ -62,6 +62,7 @@ def test_effects_with_the_long_step_are_those_of_the_short_one(bench: Bench) -> 
     effects = []
     for step in ("30min", "1h"):
         study = opened(bench, step)
+        assert not study.context.estimates_errors  # otherwise the step is that of the bands
         simulation = study.context.models.nominal
         values = simulation.vector({})
         base = kept_series(study.context, simulation, values[None])[0]
@@ -73,31 +74,11 @@ def test_effects_with_the_long_step_are_those_of_the_short_one(bench: Bench) -> 
     assert max(np.abs(fine[path] - coarse[path]).max() for path in fine) < 0.05 * largest
 
 
-def test_unknown_numbers_take_the_long_step_in_the_identification_too(bench: Bench) -> None:
-    found = []
-    for step in ("30min", "1h"):
-        context = opened(bench, step).context
-        simulation = context.models.for_calibration()
-        coarse = context.models.with_coarse_step(simulation)
-        assert (coarse is simulation) == (step == "30min")
-        assert (coarse.start, coarse.end) == (simulation.start, simulation.end)
-        seen = context.observation
-        rows = seen.during(context.periods.identification[0], context.periods.identification[1])
-        part = replace(seen, times=seen.times[rows], measured=seen.measured[rows])
-        numbers = unknowns(context, simulation, set(context.problem().paths))
-        found.append(effects_of_unknowns(context, part, simulation, simulation.vector({}), numbers))
-        assert {"site.sky.depression", "materials.brick.density"} <= {number.path for number in numbers}
-    fine, coarse_effects = found
-    largest = np.abs(fine).max()
-    assert largest > 0.1
-    # The last half hour is after the end of the last whole step of one hour.
-    assert np.abs(fine - coarse_effects)[:-1].max() < 0.05 * largest
-
-
 def test_steps_that_need_the_same_runs_share_them(
     bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    context = opened(bench, "1h").context
+    context = opened(bench, "1h", "  discrepancy: {limit: 0.1}\n").context
+    assert context.estimates_errors
     simulation, count = context.models.nominal, []
     base = simulation.vector({})
     numbers = unknowns(context, simulation, set())
@@ -111,7 +92,8 @@ def test_steps_that_need_the_same_runs_share_them(
     with Workspace(tmp_path / "work", context.identity()) as workspace, context.keeping(workspace):
         effects = effects_of_unknowns(context, context.observation, simulation, base, numbers)
         assert sum(count) == len(numbers) + 1
-        found = dict(Effects(context, simulation, np.zeros(0), base).each(lambda done, of: None))
+        series = kept_series(context, simulation, base[None])[0]
+        found = dict(Effects(context, simulation, series, base).each(lambda done, of: None))
         # The depth of the sensor alone: its uncertainty is not stated, so that bands do not have it.
         assert sum(count) == len(numbers) + 1 + 1
     for k, number in enumerate(numbers):

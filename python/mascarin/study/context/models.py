@@ -74,11 +74,11 @@ class StudyModels:
         return simulation, lead.total_seconds()
 
     def with_coarse_step(self, simulation: Simulation) -> Simulation:
-        """The model of a simulation over its period with the step of many runs."""
-        step, start = self._periods.step_of_many, simulation.start
+        """The model of a simulation over the whole record with the step of many runs."""
+        step, start = self._periods.step_of_many, self._periods.start
         if step == self._plan.step:
             return simulation
-        end = start + self._periods.whole_steps((simulation.end - start).total_seconds(), step)
+        end = start + self._periods.whole_steps((self._periods.end - start).total_seconds(), step)
         return self._once(
             ("coarse step", simulation.identity),
             lambda: self._simulate(simulation.building, start, end, step=step),

@@ -279,8 +279,7 @@ def effects_of_unknowns(
 ) -> Array:
     """Effects of numbers that are not estimated on all series.
 
-    They take the step of the sensitivity analysis: the error of a long step is nearly the same in both runs
-    of a difference. With the same step and parameter vector the diagnosis has the same runs.
+    With the same parameter vector the diagnosis has the same runs.
 
     Parameters
     ----------
@@ -289,7 +288,7 @@ def effects_of_unknowns(
     observation : Observation
         Gives the instants.
     simulation : Simulation
-        The model; its step is that of the study.
+        The model.
     base : ndarray
         Its parameter vector. [unit of each]
     unknown : sequence of Unknown
@@ -298,10 +297,8 @@ def effects_of_unknowns(
     Returns
     -------
     ndarray, shape (n, S, K)
-        For one standard uncertainty; 0 where the model cannot be run, and where long steps end before the
-        last instants. [unit of each sensor]
+        For one standard uncertainty; 0 where the model cannot be run. [unit of each sensor]
     """
-    simulation = study.models.with_coarse_step(simulation)
     moved, steps = [base], []
     for one in unknown:
         parameter = simulation.building.parameter(one.path)
