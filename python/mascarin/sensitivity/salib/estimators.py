@@ -121,9 +121,9 @@ class _Morris(Estimator):
         of_mean, squares = effects[:, :, 0], np.mean(np.sum(effects[:, :, 1:] ** 2, axis=2), axis=1)
         effect, spread = of_mean.mean(axis=1), of_mean.std(axis=1, ddof=1)
         # The factors of a group move in different directions.
-        several = np.bincount(self.plan.group_of) > 1
-        effect[several] = np.nan
-        spread[several] = np.nan
+        multiple = np.bincount(self.plan.group_of) > 1
+        effect[multiple] = np.nan
+        spread[multiple] = np.nan
         size = np.abs(of_mean).mean(axis=1)
         return ReplicateIndices(squares, squares, float(squares.sum()), effect, size, spread)
 
