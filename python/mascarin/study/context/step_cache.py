@@ -166,8 +166,9 @@ def kept_series(
         chosen = missing[first : first + _RUNS]
         records, _, _ = simulation.ensemble(np.ascontiguousarray(vectors[chosen]))
         series[chosen] = seen.simulated(simulation.index, records[..., : len(seen.names)])
-        for k in [] if workspace is None else chosen:
-            _write(workspace, keys[k], series[k])
+        if workspace is not None:
+            for k in chosen:
+                _write(workspace, keys[k], series[k])
     return series
 
 
