@@ -323,7 +323,11 @@ class Study:
         _ = context.inputs.calibration_plan
         content = checked(page)
         if out is None:
-            with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), context.identity()) as work:
+            with (
+                tempfile.TemporaryDirectory() as folder,
+                Workspace(Path(folder), context.identity()) as work,
+                context.keeping(work),
+            ):
                 return all_steps(context, work, progress)
         with Workspace(Path(out), context.identity()) as workspace, context.keeping(workspace):
             results = all_steps(context, workspace, progress)

@@ -256,6 +256,26 @@ def seven() -> CalibrationProblem:
     return replace(posed, sensors=tuple(data))
 
 
+def test_vectors_that_were_the_last_ones_are_not_run_again(
+    seven: CalibrationProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    count, ensemble = [], Simulation.ensemble
+
+    def counted(self: Simulation, vectors: np.ndarray, **options: Any) -> Any:
+        count.append(len(vectors))
+        return ensemble(self, vectors, **options)
+
+    monkeypatch.setattr(Simulation, "ensemble", counted)
+    pair = seven.values(np.stack([PLACES, 0.9 * PLACES]))
+    first = seven.model(pair)
+    assert np.array_equal(seven.model(pair.copy()), first)
+    assert count == [2]
+    assert np.array_equal(np.asarray(seven.model(pair[::-1]))[::-1], first)
+    assert count == [2, 2]
+    with pytest.raises(ValueError, match="read-only"):
+        np.asarray(first)[0] = 0.0
+
+
 def test_exact_slopes_of_the_cell_are_those_of_differences(seven: CalibrationProblem) -> None:
     for z in (PLACES, seven.positions(np.array([p.first for p in seven.parameters]))):
         found = seven.jacobian(seven.values(z[None])[0]) * seven.rates(z)

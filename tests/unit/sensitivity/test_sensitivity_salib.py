@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from mascarin.errors import InputError
 from mascarin.sensitivity import METHODS, Factor, Sensitivity, collector, plan, run
 from mascarin.sensitivity.salib import SQUARES, MorrisSensitivity, SalibPlan
+from mascarin.sensitivity.salib.estimators import elementary_effects
 from mascarin.sensitivity.spectral import SpectralSensitivity
 
 Floats = NDArray[np.float64]
@@ -201,6 +202,26 @@ def test_morris_gives_the_statistics_of_salib() -> None:
     assert list(table.columns[:6]) == ["output", "parameter", "mu", "mu_star", "sigma", "mu_star_conf"]
     assert found.first_order is None
     assert "S1" not in table
+
+
+def test_elementary_effects_of_groups_are_those_of_salib() -> None:
+    from SALib.analyze import morris
+
+    groups = ["pair", None, "pair", "three", "three", "three"]
+    factors = [Factor(f"x{i}", 0.0, 1.0, group=group) for i, group in enumerate(groups)]
+    runs = plan(factors, "morris", samples=5)
+    assert isinstance(runs, SalibPlan)
+    u, x = runs.unit_samples(1), runs.samples(1)
+    y = np.column_stack([np.sin(x @ np.arange(1.0, 7.0)), x[:, 1] ** 2 - x[:, 0]])
+    effects = elementary_effects(u, y, runs.group_of)
+    assert effects.shape == (len(runs.groups), 5, 2)
+    single = runs.groups.index("x1")
+    for k in range(2):
+        expected = morris.analyze(runs.problem, u, y[:, k], num_levels=4, seed=1)
+        size = np.asarray(expected["mu_star"], dtype=float)
+        assert np.abs(effects[:, :, k]).mean(axis=1) == pytest.approx(size, rel=1e-12)
+        assert effects[single, :, k].mean() == pytest.approx(float(expected["mu"][single]), rel=1e-12)
+        assert effects[single, :, k].std(ddof=1) == pytest.approx(float(expected["sigma"][single]), rel=1e-12)
 
 
 def test_tables_have_the_columns_of_salib() -> None:

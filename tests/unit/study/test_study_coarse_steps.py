@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from mascarin.simulation.preparation.parameter_vectors import VectorRuns
 from mascarin.study import Study
 from mascarin.study.context.step_cache import kept_series
 from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.error_model import RANGES, effects_of_unknowns, unknowns
 from mascarin.study.steps.model_runs import ModelRuns
 from mascarin.study.steps.parameter_effects import Effects
 from study_support import BUILDING, STUDY, Bench, logger_table
@@ -25,10 +28,11 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
     return Bench(folder)
 
 
-def opened(bench: Bench, step: str) -> Study:
-    """The study with a step of the sensitivity analysis."""
-    path = bench.folder / f"study-{step}.yaml"
-    path.write_text(STUDY.replace("interval: 1h", f"interval: 1h, step: {step}"), "utf-8")
+def opened(bench: Bench, step: str, identified: str = "") -> Study:
+    """The study with a step of the sensitivity analysis, and a further line of the identification."""
+    path = bench.folder / f"study-{step}{'-errors' if identified else ''}.yaml"
+    text = STUDY.replace("interval: 1h", f"interval: 1h, step: {step}")
+    path.write_text(text.replace("  starts: 2\n", f"  starts: 2\n{identified}"), "utf-8")
     return Study.from_yaml(path)
 
 
@@ -58,6 +62,7 @@ def test_effects_with_the_long_step_are_those_of_the_short_one(bench: Bench) -> 
     effects = []
     for step in ("30min", "1h"):
         study = opened(bench, step)
+        assert not study.context.estimates_errors  # otherwise the step is that of the bands
         simulation = study.context.models.nominal
         values = simulation.vector({})
         base = kept_series(study.context, simulation, values[None])[0]
@@ -67,3 +72,31 @@ def test_effects_with_the_long_step_are_those_of_the_short_one(bench: Bench) -> 
     largest = max(np.abs(one).max() for one in fine.values())
     assert largest > 0.5
     assert max(np.abs(fine[path] - coarse[path]).max() for path in fine) < 0.05 * largest
+
+
+def test_steps_that_need_the_same_runs_share_them(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    context = opened(bench, "1h", "  discrepancy: {limit: 0.1}\n").context
+    assert context.estimates_errors
+    simulation, count = context.models.nominal, []
+    base = simulation.vector({})
+    numbers = unknowns(context, simulation, set())
+    ensemble = VectorRuns.ensemble
+
+    def counted(self: VectorRuns, vectors: np.ndarray, **options: Any) -> Any:
+        count.append(len(vectors))
+        return ensemble(self, vectors, **options)
+
+    monkeypatch.setattr(VectorRuns, "ensemble", counted)
+    with Workspace(tmp_path / "work", context.identity()) as workspace, context.keeping(workspace):
+        effects = effects_of_unknowns(context, context.observation, simulation, base, numbers)
+        assert sum(count) == len(numbers) + 1
+        series = kept_series(context, simulation, base[None])[0]
+        found = dict(Effects(context, simulation, series, base).each(lambda done, of: None))
+        # The depth of the sensor alone: its uncertainty is not stated, so that bands do not have it.
+        assert sum(count) == len(numbers) + 1 + 1
+    for k, number in enumerate(numbers):
+        # `Effects` are those of the whole range, and leave out numbers without effect.
+        own = RANGES * found.get(number.path, np.zeros(effects.shape[:2]))
+        assert own == pytest.approx(effects[:, :, k], abs=1e-12)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from fnmatch import fnmatchcase
+from functools import lru_cache
 
 from mascarin.errors import InputError, did_you_mean
 
@@ -40,19 +42,23 @@ def matching(pattern: str, paths: Iterable[str], *, parts: bool = False) -> list
     >>> matching("zones.*.volume", ["zones.hall.volume", "zones.hall.height", "zones.attic.volume"])
     ['zones.hall.volume', 'zones.attic.volume']
     """
-    pattern_steps, all_steps = pattern.split("."), [path.split(".") for path in paths]
-    candidates = [steps[: len(pattern_steps)] if parts else steps for steps in all_steps]
-    matches = [".".join(steps) for steps in candidates if _fits(steps, pattern_steps)]
+    all_paths, expression = list(paths), _expression(pattern, parts)
+    matches = [fitting[0] for fitting in map(expression.match, all_paths) if fitting]
     if not matches:
+        all_steps = [path.split(".") for path in all_paths]
         raise InputError(
             f"{pattern}: found nothing in the building that matches; expected paths as listed by 'mascarin "
-            f"parameters'. {did_you_mean(pattern, _nearest(pattern_steps, all_steps))}".rstrip()
+            f"parameters'. {did_you_mean(pattern, _nearest(pattern.split('.'), all_steps))}".rstrip()
         )
     return list(dict.fromkeys(matches))
 
 
-def _fits(steps: list[str], pattern_steps: list[str]) -> bool:
-    return len(steps) == len(pattern_steps) and all(map(fits, steps, pattern_steps))
+@lru_cache(maxsize=256)
+def _expression(pattern: str, parts: bool) -> re.Pattern[str]:
+    """What fits a pattern as `fits` has it, step by step; with `parts` the beginning of a path."""
+    wild = {"*": "[^.]*", "?": "[^.]"}
+    text = "".join(wild.get(letter) or re.escape(letter) for letter in pattern)
+    return re.compile(text + (r"(?=\.|\Z)" if parts else r"\Z"), re.DOTALL)
 
 
 def fits(step: str, pattern_step: str) -> bool:

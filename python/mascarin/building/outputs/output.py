@@ -176,10 +176,16 @@ def _output(location: Place, kind: str, row: OutputKind, name: OutputName) -> Ou
 
 def named(building: Description, names: Iterable[str]) -> list[Output]:
     """Results by their names or other names of them; see `Building.output`."""
+    by_name = cached_on(building, "_outputs_by_name", lambda: _all_names(building))
+    return [_by_name(by_name, name, damp=building.humidity is not None) for name in names]
+
+
+def _all_names(building: Description) -> dict[str, Output]:
+    """All results by their names and other names."""
     by_name: dict[str, Output] = {}
     for output in reversed(outputs(building)):
         by_name.update(dict.fromkeys((*output.aliases, output.name), output))
-    return [_by_name(by_name, name, damp=building.humidity is not None) for name in names]
+    return by_name
 
 
 def chosen(building: Description, names: Iterable[str]) -> list[Output]:

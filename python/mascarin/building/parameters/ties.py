@@ -98,7 +98,17 @@ def with_tied(building: Description, all_parameters: Iterable[Parameter]) -> lis
 
 def faults(building: Description, all_parameters: Iterable[Parameter]) -> list[InitErrorDetails]:
     """What is wrong with the ties of a building."""
-    wrong, listed = [], list(all_parameters)
+    listed = list(all_parameters)
+    try:
+        tied(building.ties, listed)
+    except InputError:
+        return _faults_of_each(building, listed)
+    return []
+
+
+def _faults_of_each(building: Description, listed: list[Parameter]) -> list[InitErrorDetails]:
+    """What is wrong with each tie, or with all together."""
+    wrong = []
     for pattern, how in building.ties.items():
         try:
             tied({pattern: how}, listed)

@@ -143,7 +143,9 @@ def estimate_experiments(
         problem, linear, [replace(each, further=()) for each in stated], problem.positions(fit.x)
     )
     if further is not None:
-        linearization = replace(linearization, further=further(problem.values(linearization.z[None])[0]))
+        # At the estimates themselves, with which all later steps run the model.
+        z = _on_ends(linearization.z)
+        linearization = replace(linearization, further=further(problem.values(z[None])[0]))
 
     def simulate(z: Floats) -> Floats:
         measured = np.where(problem.mask, problem.measured, 0.0)
@@ -192,9 +194,7 @@ def _reported(
 ) -> Calibration:
     """The calibration with the estimates of the joint distribution."""
     distribution = joints[0]  # parameters are those of all
-    z = np.where(
-        linearization.z < AT_BOUND, 0.0, np.where(linearization.z > 1.0 - AT_BOUND, 1.0, linearization.z)
-    )
+    z = _on_ends(linearization.z)
     x = problem.values(z[None])[0]
     tail = 0.5 * (1.0 - fit.confidence)
     low, high = np.quantile(distribution.widened(), [tail, 1.0 - tail], axis=0)
@@ -244,6 +244,11 @@ def _reported(
         posterior=chains,
         reason=f"{fit.reason}, then estimated together with the errors of sensors and model",
     )
+
+
+def _on_ends(z: Floats) -> Floats:
+    """Positions (P,), those that are nearly on an end of their range on it. [-]"""
+    return np.where(z < AT_BOUND, 0.0, np.where(z > 1.0 - AT_BOUND, 1.0, z))
 
 
 def _outward(z: Floats, distribution: JointPosterior) -> Floats:

@@ -1,18 +1,20 @@
-"""Indices of one replicate and one output by SALib."""
+"""Indices of one replicate and one output, by SALib but for elementary effects."""
 
 from __future__ import annotations
 
-import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mascarin.sensitivity.base.factors import Floats
 from mascarin.sensitivity.salib.library import salib
 from mascarin.sensitivity.salib.plans import LEVELS, SalibName, SalibPlan
 
+#: Length of a step of a trajectory, in ranges.
+MOVE: Final = LEVELS / (2.0 * (LEVELS - 1.0))
 _MAX_OMITTED_VARIANCE: Final = 1e-6
 
 
@@ -114,43 +116,58 @@ class _Sobol(Estimator):
 
 class _Morris(Estimator):
     def part(self, u: Floats, y: Floats, basis: Floats) -> ReplicateIndices:
-        single = np.bincount(self.plan.group_of) == 1
-        squares = (self._squares if single.all() else self._squares_of_groups)(u, y @ basis)
-        effects = self._effects(u, y.mean(axis=1))
-        effect, size, spread = (
-            np.array(effects[key], dtype=np.float64) for key in ("mu", "mu_star", "sigma")
-        )
+        together = np.column_stack([y.mean(axis=1), y @ basis])
+        effects = elementary_effects(u, together, self.plan.group_of)
+        of_mean, squares = effects[:, :, 0], np.mean(np.sum(effects[:, :, 1:] ** 2, axis=2), axis=1)
+        effect, spread = of_mean.mean(axis=1), of_mean.std(axis=1, ddof=1)
         # The factors of a group move in different directions.
-        effect[~single] = np.nan
-        spread[~single] = np.nan
+        multiple = np.bincount(self.plan.group_of) > 1
+        effect[multiple] = np.nan
+        spread[multiple] = np.nan
+        size = np.abs(of_mean).mean(axis=1)
         return ReplicateIndices(squares, squares, float(squares.sum()), effect, size, spread)
 
-    def _squares(self, u: Floats, components: Floats) -> Floats:
-        """Mean squared effect (G,), summed over the components (N, K), from mean and spread."""
-        if not components.shape[1]:
-            return np.zeros(len(self.plan.groups))
-        count = self.plan.size
-        effects = [self._effects(u, component) for component in components.T]
-        mean, spread = (np.array([f[key] for f in effects], dtype=np.float64) for key in ("mu", "sigma"))
-        return np.asarray(np.sum(mean**2 + spread**2 * (count - 1) / count, axis=0))
 
-    def _squares_of_groups(self, u: Floats, components: Floats) -> Floats:
-        """The same from single trajectories, because SALib gives no spread for groups."""
-        step, count = len(self.plan.groups) + 1, self.plan.size
-        squares = np.zeros(step - 1)
-        for k in range(count):
-            rows = slice(k * step, (k + 1) * step)
-            for component in components[rows].T:
-                squares += np.array(self._effects(u[rows], component)["mu_star"]) ** 2 / count
-        return squares
+def elementary_effects(u: Floats, y: Floats, group_of: NDArray[np.int64]) -> Floats:
+    """Compute the elementary effects of several outputs at once.
 
-    def _effects(self, u: Floats, y: Floats) -> Any:
-        with warnings.catch_warnings():
-            # The spread of a single trajectory is undefined, and not used.
-            warnings.simplefilter("ignore", RuntimeWarning)
-            return salib("analyze.morris").analyze(
-                self.plan.problem, u, y, num_resamples=2, num_levels=LEVELS, seed=_unused()
-            )
+    SALib computes those of one output at a time, with a matrix of parameters by parameters for each.
+
+    Parameters
+    ----------
+    u : ndarray, shape (R (G + 1), P)
+        Samples of R trajectories as probabilities; each step of one moves the factors of one group. [-]
+    y : ndarray, shape (R (G + 1), K)
+        Outputs of the runs. [unit of each]
+    group_of : ndarray of int, shape (P,)
+        Group of each factor, of 0 to G - 1.
+
+    Returns
+    -------
+    ndarray, shape (G, R, K)
+        Change of each output for a move of the group over its whole range, with the sign of the move of its
+        first factor. [unit of each]
+
+    References
+    ----------
+    Morris M.D. (1991), Technometrics 33, 161. https://doi.org/10.1080/00401706.1991.10484804
+
+    Examples
+    --------
+    >>> u = np.array([[0.0, 1.0], [2 / 3, 1.0], [2 / 3, 1 / 3]])
+    >>> elementary_effects(u, u @ [[3.0], [-1.0]], np.array([0, 1])).round(3).ravel().tolist()
+    [3.0, -1.0]
+    """
+    count = int(group_of.max()) + 1
+    trajectories = u.reshape(-1, count + 1, u.shape[1])
+    moves = np.diff(trajectories, axis=1)
+    changes = np.diff(y.reshape(len(trajectories), count + 1, -1), axis=1)
+    # The first factor that a step moves: all of its group are moved by the same length.
+    first = np.argmax(np.abs(moves) > 0.25 * MOVE, axis=2)
+    sign = np.sign(np.take_along_axis(moves, first[:, :, None], axis=2))
+    effects = np.empty((count, len(trajectories), changes.shape[2]))
+    effects[group_of[first].T, np.arange(len(trajectories))] = np.moveaxis(sign * changes / MOVE, 1, 0)
+    return effects
 
 
 ESTIMATORS: Final[dict[SalibName, type[Estimator]]] = {

@@ -57,7 +57,7 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.validation.days": ("DayChoice", "DriverRange"),
     "mascarin.validation.residuals": ("DailyCycle", "DriverCorrelation", "ResidualAnalysis"),
 }
-#: Runs of which the series are kept together.
+#: Runs after which the series are kept.
 _RUNS: Final = 16
 
 
@@ -79,21 +79,35 @@ def kept(
     """
     if workspace is None:
         return make()
-    name = f"{NAME}-{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}"
-    # The ending is that of former versions, whose files are replaced.
-    path = workspace.path(f"{name}.npz")
     try:
-        notes, arrays = own_files.unpacked(own_files.read(path, name))
-        result: _T = _decoded(notes, arrays, known)
+        result: _T = _read(workspace, key, known)
     except (OSError, *_UNUSABLE):
         pass  # there is none, of another version, or damaged: computed again
     else:
         return result
     made = make()
-    plain: dict[str, Any] = {}
-    tree = _encoded(made, plain, known)
-    own_files.write(path, name, own_files.packed(tree, plain))
+    _write(workspace, key, made, known)
     return made
+
+
+def _name(key: object) -> str:
+    """Name of the content of a key."""
+    return f"{NAME}-{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}"
+
+
+def _read(workspace: Workspace, key: object, known: Sequence[object] = ()) -> Any:
+    """The result of a key; raises OSError or one of `_UNUSABLE` where there is none."""
+    name = _name(key)
+    # The ending is that of former versions, whose files are replaced.
+    notes, arrays = own_files.unpacked(own_files.read(workspace.path(f"{name}.npz"), name))
+    return _decoded(notes, arrays, known)
+
+
+def _write(workspace: Workspace, key: object, made: object, known: Sequence[object] = ()) -> None:
+    """Keep the result of a key."""
+    name, plain = _name(key), dict[str, Any]()
+    tree = _encoded(made, plain, known)
+    own_files.write(workspace.path(f"{name}.npz"), name, own_files.packed(tree, plain))
 
 
 def written_once(workspace: Workspace, key: object, write: Callable[[], Sequence[Path]]) -> list[Path]:
@@ -118,7 +132,9 @@ def written_once(workspace: Workspace, key: object, write: Callable[[], Sequence
 def kept_series(
     study: StudyContext, simulation: Simulation, vectors: Array, observation: Observation | None = None
 ) -> Array:
-    """Simulated series of parameter vectors at the instants of the comparison, kept in pieces.
+    """Simulated series of parameter vectors at the instants of the comparison, each kept.
+
+    Steps that need the same runs, such as the bands and the diagnosis, share them.
 
     Parameters
     ----------
@@ -136,19 +152,33 @@ def kept_series(
     ndarray, shape (M, n, S)
         NaN for a vector with which the model cannot be run. [unit of each sensor]
     """
-    seen = study.observation if observation is None else observation
-    sensors, parts = len(seen.names), []
-    for first in range(0, len(vectors), _RUNS):
-        chosen = np.ascontiguousarray(vectors[first : first + _RUNS])
+    seen, workspace = study.observation if observation is None else observation, study.workspace
+    series = np.empty((len(vectors), *seen.measured.shape))
+    times = (str(seen.times[0]), str(seen.times[-1]), len(seen.times))
+    keys = [
+        ("series", simulation.identity, times, hashlib.sha256(vector.tobytes()).hexdigest())
+        for vector in np.ascontiguousarray(vectors)
+    ]
+    missing = list(range(len(keys)))
+    if workspace is not None:
+        missing = [k for k in missing if not _recalled(workspace, keys[k], series[k])]
+    for first in range(0, len(missing), _RUNS):
+        chosen = missing[first : first + _RUNS]
+        records, _, _ = simulation.ensemble(np.ascontiguousarray(vectors[chosen]))
+        series[chosen] = seen.simulated(simulation.index, records[..., : len(seen.names)])
+        if workspace is not None:
+            for k in chosen:
+                _write(workspace, keys[k], series[k])
+    return series
 
-        def make(chosen: Array = chosen) -> Array:
-            records, _, _ = simulation.ensemble(chosen)
-            return seen.simulated(simulation.index, records[..., :sensors])
 
-        times = (str(seen.times[0]), str(seen.times[-1]), len(seen.times))
-        key = ("series", simulation.identity, times, hashlib.sha256(chosen.tobytes()).hexdigest())
-        parts.append(kept(study.workspace, key, make))
-    return np.concatenate(parts)
+def _recalled(workspace: Workspace, key: object, series: Array) -> bool:
+    """Copy a kept series into an array, and whether there is one."""
+    try:
+        series[...] = _read(workspace, key)
+    except (OSError, *_UNUSABLE):
+        return False
+    return True
 
 
 def _encoded(value: Any, arrays: dict[str, Any], known: Sequence[object]) -> Any:

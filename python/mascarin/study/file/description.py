@@ -98,7 +98,8 @@ class SensitivityPlan(Part):
     step: RunStep | None = Field(
         None,
         description="Time step of these runs, and of those that derive the effects of all parameters for the "
-        "analysis of the residuals; a whole part of the interval. By default that of the study",
+        "analysis of the residuals, where errors of the model are not estimated; a whole part of the "
+        "interval. By default that of the study",
     )
     ranges: dict[str, tuple[float, float]] = Field(
         default_factory=dict, description="Ranges that replace those of the building"

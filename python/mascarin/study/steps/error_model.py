@@ -164,10 +164,23 @@ class _Experiment:
         """Effects of the unknown numbers on its used sensors, from the values of all parameters (P,)."""
         study, sensors = self.study, self.study.plan.sensors
         columns = [s for s, name in enumerate(study.observation.names) if sensors[name].use]
-        own = values[list(self.share.columns)].tolist()
-        base = self.simulation.vector(dict(zip(self.share.problem.paths, own, strict=True)))
-        seen = _part(study.observation, study.rows)
+        own = dict(zip(self.share.problem.paths, values[list(self.share.columns)].tolist(), strict=True))
+        if self._begins_the_record:
+            whole = study.models.over_record()
+            effects = effects_of_unknowns(study, study.observation, whole, whole.vector(own), self.unknown)
+            return effects[study.rows][:, columns]
+        seen, base = _part(study.observation, study.rows), self.simulation.vector(own)
         return effects_of_unknowns(study, seen, self.simulation, base, self.unknown)[:, columns]
+
+    @property
+    def _begins_the_record(self) -> bool:
+        """Whether its runs are the beginning of those over the record, which bands and diagnosis need too.
+
+        Forms of a model are many, and bands need the effects of one of them.
+        """
+        study = self.study
+        alone = study.workspace is not None and not study.plan.alternatives
+        return alone and self.simulation.start == study.models.over_record().start
 
     def names(self, own: str) -> list[str]:
         """Names of the unknown numbers: a depth of a sensor is of the experiment, all others are shared."""
@@ -265,6 +278,8 @@ def effects_of_unknowns(
     unknown: Sequence[Unknown],
 ) -> Array:
     """Effects of numbers that are not estimated on all series.
+
+    With the same parameter vector the diagnosis has the same runs.
 
     Parameters
     ----------

@@ -28,8 +28,9 @@ _CHUNK: Final = 32
 class Effects:
     """Differences of runs in which one parameter is changed, extrapolated to its whole range.
 
-    Runs side by side: for hundreds of parameters quicker than exact derivatives. They take the step of the
-    sensitivity analysis; the error of a long step is nearly the same in both runs of a difference.
+    Runs side by side: for hundreds of parameters quicker than exact derivatives. Where errors of sensors and
+    model are estimated, the bands have made these runs with the step of the study. Otherwise they take that
+    of the sensitivity analysis; the error of a long step is nearly the same in both runs of a difference.
 
     Parameters
     ----------
@@ -44,7 +45,9 @@ class Effects:
     """
 
     def __init__(self, study: StudyContext, simulation: Simulation, base: Array, values: Array) -> None:
-        self._study, self._simulation = study, study.models.with_coarse_step(simulation)
+        self._study, self._simulation = study, simulation
+        if not study.estimates_errors:
+            self._simulation = study.models.with_coarse_step(simulation)
         self._base, self._values = base, values
         if self._simulation is not simulation:
             self._base = kept_series(study, self._simulation, values[None])[0]
