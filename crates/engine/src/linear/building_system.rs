@@ -322,17 +322,19 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         };
         let storage = numbers.capacity.scale(1.0 / inputs.length);
         self.coupled.add_diagonal(air, storage + entering.slope);
-        self.coupled.right[air] +=
+        let mut right = self.coupled.right[air];
+        right +=
             storage * inputs.air[zone] + entering.offset + entering.slope * inputs.conditions.outdoor_air;
         let [load, _] = numbers.load_parts(inputs.load[zone]);
-        self.coupled.right[air] += inputs.conditions.zones[zone].convective + load;
+        right += inputs.conditions.zones[zone].convective + load;
         if let Some(&sun) = inputs.conditions.sun.to_air.get(zone) {
-            self.coupled.right[air] += sun;
+            right += sun;
         }
         if let Some(holding) = inputs.holding.get(zone) {
             self.coupled.add_diagonal(air, holding.slope);
-            self.coupled.right[air] += holding.offset;
+            right += holding.offset;
         }
+        self.coupled.right[air] = right;
     }
 
     /// Adds a wall to the coupled system, its exterior surfaces eliminated.

@@ -206,6 +206,65 @@ fn multiply<S: Real>(mut sum: Rows<S>, map: &[Rows<S>], x: &[S]) -> Rows<S> {
     sum
 }
 
+/// Calls work with a number of cells that is a constant in each arm.
+macro_rules! in_arms {
+    ($n:expr, $work:expr; $($number:literal)*) => {
+        match $n {
+            $($number => $work($number),)*
+            n => $work(n),
+        }
+    };
+}
+
+/// Works on a wall with its number of cells. For plain numbers a small one is a constant of the compiler, which then neither counts rows and
+/// columns nor checks their places. In packs this is a small part of the work.
+#[inline(always)]
+fn with_known_cells<S: Real>(n: usize, mut work: impl FnMut(usize)) {
+    if const { S::CHUNK == 1 } {
+        return work(n);
+    }
+    in_arms!(n, work; 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);
+}
+
+/// `map x` for all rows of a wall of `n` cells.
+#[inline(always)]
+fn multiply_cells<S: Real>(n: usize, map: &[Rows<S>], x: &[S], rows: &mut [Rows<S>]) {
+    let (x, rows) = (&x[..n], &mut rows[..(n + 2).div_ceil(ROWS)]);
+    for (rows, map) in rows.iter_mut().zip(map.chunks_exact(n)) {
+        *rows = multiply([S::zero(); ROWS], map, x);
+    }
+}
+
+/// The cells of a wall of `n` cells at the end of a step, from what its start and its surfaces give; adds up the heat that they have stored.
+#[inline(always)]
+fn reach_end<S: Real>(
+    n: usize,
+    (by_start, map): (&[Rows<S>], &[[Rows<S>; 4]]),
+    surfaces: &[S; 4],
+    (cells, capacity): (&mut [S], &[S]),
+    stored: &mut Rows<S>,
+) {
+    let ((whole, rest), (whole_capacity, rest_capacity)) =
+        (cells[..n].as_chunks_mut::<ROWS>(), capacity[..n].as_chunks::<ROWS>());
+    let blocks = n.div_ceil(ROWS);
+    let mut reached = by_start[..blocks].iter().zip(&map[..blocks]).map(
+        #[inline(always)]
+        |(&by_start, map)| multiply(by_start, map, surfaces),
+    );
+    for ((cells, capacity), reached) in whole.iter_mut().zip(whole_capacity).zip(&mut reached) {
+        for i in 0..ROWS {
+            stored[i] += capacity[i] * (reached[i] - cells[i]);
+        }
+        *cells = reached;
+    }
+    if let Some(reached) = reached.next() {
+        for ((cell, &capacity), reached) in rest.iter_mut().zip(rest_capacity).zip(reached) {
+            stored[0] += capacity * (reached - *cell);
+            *cell = reached;
+        }
+    }
+}
+
 /// Runs work on rows of plain numbers with wide instructions, where the machine has them. Packs of lanes use them anyway.
 #[inline(always)]
 fn with_wide_instructions<S: Real, R>(work: impl FnOnce() -> R) -> R {
@@ -324,9 +383,12 @@ impl<S: Real> TransitionMatrices<S> {
             if !self.started && step_map.long {
                 step_map.solve_start(&chains[step_map.wall], self.ratio, x, own.as_flattened_mut());
             } else if !self.started {
-                for (rows, map) in own.iter_mut().zip(step_map.of_cells(&self.from_cells).chunks_exact(n)) {
-                    *rows = multiply([S::zero(); ROWS], map, x);
-                }
+                let map = step_map.of_cells(&self.from_cells);
+                with_known_cells::<S>(
+                    n,
+                    #[inline(always)]
+                    |n| multiply_cells(n, map, x, own),
+                );
             }
             let own = own.as_flattened();
             sources[step_map.wall] = [own[n], own[n + 1]];
@@ -398,26 +460,13 @@ impl<S: Real> TransitionMatrices<S> {
             (own, by_start) = by_start.split_at(step_map.blocks[0]);
             let map = step_map.of_surfaces(&self.from_surfaces);
             let ([a, b], [c, d]) = (step_map.first_surfaces, pairs[step_map.wall]);
-            let mut reached = own.iter().zip(map).map(
-                #[inline(always)]
-                |(&by_start, map)| multiply(by_start, map, &[a, b, c, d]),
-            );
             let (cells, capacity) =
                 (&mut cells[step_map.cells.clone()], &self.capacity[step_map.cells.clone()]);
-            let ((whole, rest), (whole_capacity, rest_capacity)) =
-                (cells.as_chunks_mut::<ROWS>(), capacity.as_chunks::<ROWS>());
-            for ((cells, capacity), reached) in whole.iter_mut().zip(whole_capacity).zip(&mut reached) {
-                for i in 0..ROWS {
-                    stored[i] += capacity[i] * (reached[i] - cells[i]);
-                }
-                *cells = reached;
-            }
-            if let Some(reached) = reached.next() {
-                for ((cell, &capacity), reached) in rest.iter_mut().zip(rest_capacity).zip(reached) {
-                    stored[0] += capacity * (reached - *cell);
-                    *cell = reached;
-                }
-            }
+            with_known_cells::<S>(
+                cells.len(),
+                #[inline(always)]
+                |n| reach_end(n, (own, map), &[a, b, c, d], (cells, capacity), &mut stored),
+            );
         }
         (stored[0] + stored[1]) + (stored[2] + stored[3])
     }

@@ -12,7 +12,7 @@ use crate::input::description;
 use crate::input::forcing::{Schedule, scheduled};
 use crate::input::values::Values;
 use crate::number::line::Line;
-use crate::number::real::Real;
+use crate::number::real::{Mask, Real};
 use crate::physics::constants::{GRAVITY, KELVIN};
 use crate::physics::flow_density::{AirDensities, AirFlow, SiteAir};
 use crate::physics::formula::function::Function;
@@ -158,8 +158,13 @@ impl<S: Real> Intake<'_, S> {
 pub(crate) fn infiltration<S: Real>(rates: &[S; 3], air_capacity: S, wind: S, outdoor: S, air: S) -> Line<S> {
     let d = outdoor - air;
     let [_, temperature, _] = *rates;
-    let magnitude = d.smooth_abs(ROUND_OFF);
     let per_second = air_capacity.scale(1.0 / 3600.0);
+    // Without this part the rate is the same at all differences, to the bit: it is spared a root and a division.
+    if const { !S::DERIVATIVES } && !S::zero().lt(temperature.abs()).any() {
+        let rate = per_second * leakage(rates, wind, S::zero());
+        return Line::tangent(rate * d, rate, d);
+    }
+    let magnitude = d.smooth_abs(ROUND_OFF);
     let rate = per_second * leakage(rates, wind, magnitude);
     let slope = rate + per_second * temperature * d * d / magnitude;
     Line::tangent(rate * d, slope, d)

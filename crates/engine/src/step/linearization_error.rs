@@ -130,6 +130,12 @@ impl<S: Real> NonlinearLaws<S> {
         self.limit = Limit::new(flow.scale(stage.tableau.tolerance.linearization_error.of::<S>()), self.bend);
     }
 
+    /// Where a change of a temperature [K] is not too large for any law, by lane.
+    #[inline(always)]
+    pub(crate) fn accepts_change(&self, change: S) -> S::Mask {
+        (change * change).scale(EMISSION).lt(self.limit.linearization_error)
+    }
+
     /// Where the largest remainder is accepted, by lane. `change`: the largest change from the iterate to the solution [K].
     #[inline(always)]
     pub(crate) fn accepts(
@@ -139,7 +145,7 @@ impl<S: Real> NonlinearLaws<S> {
         system: &BuildingSystem<'_, S>,
         [old, new]: [&Unknowns<S>; 2],
     ) -> S::Mask {
-        let mut small = (change * change).scale(EMISSION).lt(self.limit.linearization_error);
+        let mut small = self.accepts_change(change);
         // In most of the iterations that do not end here, this is enough to know.
         if !small.any() {
             return small;

@@ -125,7 +125,9 @@ impl<S: Real> Exterior<S> {
     ) {
         self.laws.set_wind(conditions);
         let windows = layout.window_places();
-        self.beside_windows[0].copy_from_slice(&interior_heat[windows.clone()]);
+        if !windows.is_empty() {
+            self.beside_windows[0].copy_from_slice(&interior_heat[windows.clone()]);
+        }
         // In the order of the surfaces.
         let sources = sources.as_flattened();
         for ((heat, &area), interior) in interior_heat.iter_mut().zip(&self.wall_area).zip(&layout.walls) {

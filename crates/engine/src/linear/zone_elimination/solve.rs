@@ -42,15 +42,22 @@ impl<S: Real> ZoneFront<S> {
     /// Influence of the current right-hand side, where the matrix is constant.
     #[inline(always)]
     pub(super) fn apply_influence<V: Chunk<S>>(&mut self) {
-        let Layout { surfaces, eliminated, stride, .. } = self.layout;
-        for start in (0..=surfaces).step_by(S::CHUNK) {
-            let mut sum = V::zero();
-            let lines = self.influence.of_right.chunks_exact(stride);
-            for (line, &right) in lines.zip(&self.equations.right).take(eliminated) {
-                sum += V::load(&line[start..start + S::CHUNK]) * V::filled(right);
-            }
-            sum.store(&mut self.influence.applied[start..start + S::CHUNK]);
+        let registers = (self.layout.surfaces + 1).div_ceil(S::CHUNK);
+        for pair in 0..registers / 2 {
+            self.apply_to_registers::<V, 2>(2 * pair * S::CHUNK);
         }
+        if registers % 2 == 1 {
+            self.apply_to_registers::<V, 1>((registers - 1) * S::CHUNK);
+        }
+    }
+
+    #[inline(always)]
+    fn apply_to_registers<V: Chunk<S>, const C: usize>(&mut self, start: usize) {
+        let Layout { eliminated, stride, .. } = self.layout;
+        let lines = self.influence.of_right.chunks_exact(stride);
+        let right = self.equations.right[..eliminated].iter().copied();
+        let sums = add_lines::<S, V, C>([V::zero(); C], lines.zip(right), start);
+        store_row(&sums, &mut self.influence.applied[start..]);
     }
 
     /// Adds the Schur complement of the retained unknowns, and their right-hand sides, to the coupled system. Its unknowns are
@@ -148,15 +155,26 @@ impl<S: Real> ZoneFront<S> {
     /// Temperatures of the eliminated surfaces in place of their right-hand sides, where the matrix is constant.
     #[inline(always)]
     fn solve_by_influence<V: Chunk<S>>(&mut self, unknowns: &[S]) {
-        let Layout { eliminated, stride, retained_rows, .. } = &self.layout;
-        for start in (0..*eliminated).step_by(S::CHUNK) {
-            let mut sum = V::load(&self.influence.applied[start..start + S::CHUNK]);
-            let lines = self.influence.of_retained[eliminated * stride..].chunks_exact(*stride);
-            for (line, &row) in lines.zip(retained_rows) {
-                sum += V::load(&line[start..start + S::CHUNK]) * V::filled(unknowns[row]);
-            }
-            sum.store(&mut self.equations.right[start..start + S::CHUNK]);
+        let registers = self.layout.eliminated.div_ceil(S::CHUNK);
+        for pair in 0..registers / 2 {
+            self.solve_registers::<V, 2>(unknowns, 2 * pair * S::CHUNK);
         }
+        if registers % 2 == 1 {
+            self.solve_registers::<V, 1>(unknowns, (registers - 1) * S::CHUNK);
+        }
+    }
+
+    #[inline(always)]
+    fn solve_registers<V: Chunk<S>, const C: usize>(&mut self, unknowns: &[S], start: usize) {
+        let Layout { eliminated, stride, retained_rows, .. } = &self.layout;
+        let lines = self.influence.of_retained[eliminated * stride..].chunks_exact(*stride);
+        let retained = retained_rows.iter().map(
+            #[inline(always)]
+            |&row| unknowns[row],
+        );
+        let applied = load_row::<S, V, C>(&self.influence.applied[start..]);
+        let sums = add_lines(applied, lines.zip(retained), start);
+        store_row(&sums, &mut self.equations.right[start..]);
     }
 
     /// The same by back substitution, from the last surface to the first.
@@ -288,6 +306,41 @@ impl<S: Real> ZoneFront<S> {
             |i| self.layout.row(i),
         );
     }
+}
+
+/// Some registers of a row.
+#[inline(always)]
+fn load_row<S: Real, V: Chunk<S>, const C: usize>(numbers: &[S]) -> [V; C] {
+    let numbers = &numbers[..C * S::CHUNK];
+    core::array::from_fn(
+        #[inline(always)]
+        |c| V::load(&numbers[c * S::CHUNK..(c + 1) * S::CHUNK]),
+    )
+}
+
+/// Writes some registers of a row.
+#[inline(always)]
+fn store_row<S: Real, V: Chunk<S>, const C: usize>(row: &[V; C], numbers: &mut [S]) {
+    let numbers = &mut numbers[..C * S::CHUNK];
+    for (c, &register) in row.iter().enumerate() {
+        register.store(&mut numbers[c * S::CHUNK..(c + 1) * S::CHUNK]);
+    }
+}
+
+/// Registers of a row plus those of some lines from a place on, each line times its number: one pass, in which the sums stay in registers.
+#[inline(always)]
+fn add_lines<'l, S: Real, V: Chunk<S>, const C: usize>(
+    mut sums: [V; C],
+    lines: impl Iterator<Item = (&'l [S], S)>,
+    start: usize,
+) -> [V; C] {
+    for (line, number) in lines {
+        let (line, number) = (load_row::<S, V, C>(&line[start..]), V::filled(number));
+        for (sum, part) in sums.iter_mut().zip(line) {
+            *sum += part * number;
+        }
+    }
+    sums
 }
 
 impl ZoneFront<f64> {

@@ -5,7 +5,7 @@ use super::segments::{Reading, Segments};
 use super::text::{FractionText, Text};
 use crate::input::description::{MeltingCurve, Tail};
 use crate::input::values::Values;
-use crate::number::real::{Logistic, Real};
+use crate::number::real::{Logistic, Mask, Real};
 use core::f64::consts::LOG2_E;
 
 /// Fraction of the transition that is cut off at each end of a curve with tails, to make it compact.
@@ -362,8 +362,13 @@ fn measured<S: Real>(segments: &Segments, read: S) -> CurvePoint<S> {
 /// Limits a step that crosses a temperature and is longer than a width to that temperature.
 #[inline(always)]
 pub(super) fn limit_at<S: Real>(from: S, to: S, place: S, width: S) -> S {
+    // Most steps are short.
+    let long = width.lt((to - from).abs());
+    if !long.any() {
+        return to;
+    }
     let crosses = (from.lt(place) & place.lt(to)) | (to.lt(place) & place.lt(from));
-    S::select(crosses & width.lt((to - from).abs()), place, to)
+    S::select(crosses & long, place, to)
 }
 
 #[cfg(test)]
