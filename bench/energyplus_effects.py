@@ -298,10 +298,17 @@ def _roof_plants(model: Model) -> None:
     model["BuildingSurface:Detailed"]["room R"]["construction_name"] = "green"
 
 
+def _basement(model: Model, **boundary: str) -> None:
+    """Put a wall and the floor below the ground."""
+    surfaces = model["BuildingSurface:Detailed"]
+    surfaces["room N"] |= {"sun_exposure": "NoSun", "wind_exposure": "NoWind"}
+    for name in ("room N", "room F"):
+        surfaces[name] |= boundary
+
+
 def _foundation(model: Model) -> None:
     put(model, "Foundation:Kiva", base={})
-    floor = model["BuildingSurface:Detailed"]["room F"]
-    floor |= {"outside_boundary_condition": "Foundation", "outside_boundary_condition_object": "base"}
+    _basement(model, outside_boundary_condition="Foundation", outside_boundary_condition_object="base")
     put(model, "SurfaceProperty:ExposedFoundationPerimeter", edge={
         "surface_name": "room F", "exposed_perimeter_calculation_method": "ExposedPerimeterFraction",
         "exposed_perimeter_fraction": 1.0,
@@ -443,7 +450,10 @@ CASES = {
         "WindowShadingControl", "*, on*", _shaded("OnIfHighZoneAirTemperature", setpoint=24.0)
     ),
     "green_roof": Case("Material:RoofVegetation", "*", _roof_plants),
-    "kiva": Case("BuildingSurface:Detailed", "ground by foundation*", _foundation),
+    "kiva": Case(
+        "BuildingSurface:Detailed", "ground by foundation*", _foundation,
+        without=lambda model: _basement(model, outside_boundary_condition="Ground"),
+    ),
     "moisture": Case("MaterialProperty:MoisturePenetrationDepth", "*", _moisture),
     "moisture_method": Case("HeatBalanceAlgorithm", "moisture in walls*", _moisture),
     "operative": Case(
@@ -460,6 +470,8 @@ CASES = {
         _outdoor_air(outdoor_air_economizer_type="DifferentialDryBulb", cooling_limit="LimitFlowRate",
                      maximum_cooling_air_flow_rate=0.2),
         without=_outdoor_air(cooling_limit="LimitFlowRate", maximum_cooling_air_flow_rate=0.2),
+        # Beside infiltration by wind it is not carried over.
+        both=sets("ZoneInfiltration:DesignFlowRate", velocity_term_coefficient=0.01),
     ),
     "rain": Case("RunPeriod", "rain*", sets("RunPeriod", use_weather_file_rain_indicators="Yes")),
     "reflectance": Case(

@@ -274,7 +274,7 @@ def test_an_economizer_has_a_law_beside_the_leaks(tmp_path: Path) -> None:
     assert leaks["air_changes"] == 0.5, "the constant infiltration of the file"
     # 0.25 m3/s above the least flow, in 75 m3: 12 per hour.
     assert room["infiltration"]["formula"].startswith("12*(min(max((Ti - 23.8)/0.2, 0), 1)")
-    assert economizer_findings(conversion) == [("approximated", "an economizer")]
+    assert economizer_findings(conversion) == [("approximated", "an economizer that follows the load")]
     enthalpy = changed(
         tmp_path,
         "mechanical_outdoor_air",

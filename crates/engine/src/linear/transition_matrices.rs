@@ -217,10 +217,10 @@ macro_rules! in_arms {
 }
 
 /// Works on a wall with its number of cells. For plain numbers a small one is a constant of the compiler, which then neither counts rows and
-/// columns nor checks their places. In packs this is a small part of the work.
+/// columns nor checks their places. In packs this is a small part of the work, and pages carry the engine with them.
 #[inline(always)]
 fn with_known_cells<S: Real>(n: usize, mut work: impl FnMut(usize)) {
-    if const { S::CHUNK == 1 } {
+    if const { S::CHUNK == 1 || cfg!(target_arch = "wasm32") } {
         return work(n);
     }
     in_arms!(n, work; 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);

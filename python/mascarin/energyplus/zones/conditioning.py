@@ -405,7 +405,7 @@ def _economize(context: Context, zone: Zone, system: IdfObject, least: Draught, 
         return
     context.findings.approximated(
         system,
-        what,
+        "an economizer that follows the load",
         f"a flow that rises within {band:g} K below the cooling set point of {set_point:g} degC while it is "
         "cooler outdoors; 1 to 2 % of the cooling in a small room",
     )
