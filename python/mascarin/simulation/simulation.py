@@ -333,7 +333,8 @@ class Simulation(VectorRuns):
     ) -> StoredRun:
         """Run once, and write the series to a file while the run goes on.
 
-        The memory that it takes does not grow with the period. The file appears when it is complete.
+        Series are not held in memory, the weather of all steps is: some 22 MB for a year at 15 min. The file
+        appears when it is complete.
 
         Parameters
         ----------
