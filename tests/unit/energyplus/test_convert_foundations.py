@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import DATA, unavailable
 
 from mascarin.energyplus import Conversion, convert
+from small_models import energyplus_small
 
 HERE = Path(__file__).resolve().parents[2]
 SMALL = HERE / "idf_small"
@@ -21,14 +20,7 @@ PLAIN = "Foundation:Kiva,foot;"
 @pytest.fixture(scope="module")
 def bench(data_dir: Path) -> Any:
     """The module that simulates a conversion by hours."""
-    sys.path.insert(0, str(HERE.parent / "bench"))
-    try:
-        import energyplus_small  # type: ignore[import-not-found]
-    finally:
-        sys.path.remove(str(HERE.parent / "bench"))
-    if not energyplus_small.WEATHER.is_file():
-        unavailable(f"no weather at {energyplus_small.WEATHER}", DATA)
-    return energyplus_small
+    return energyplus_small()
 
 
 def converted(
@@ -132,3 +124,11 @@ def test_basements_are_listed(tmp_path: Path) -> None:
     assert [one.what for one in conversion.findings if one.level == "left out"].count(
         "ground by foundation"
     ) >= 1
+
+
+@pytest.mark.parametrize("row", ["1999,1,1,1,60,?,cold,2", "cut", "1999,1,1,1,60,?,nan,2", ""])
+def test_a_weather_file_without_temperatures_gives_no_ground_water(tmp_path: Path, row: str) -> None:
+    head = ["LOCATION,Chicago,IL,USA,TMY3,725300,41.98,-87.92,-6.0,201.0", *["X"] * 7]
+    weather = tmp_path / "weather.epw"
+    weather.write_text("\n".join([*head, row, row]), encoding="utf-8")
+    assert "deep_temperature" not in block_of(converted(tmp_path, weather=weather))

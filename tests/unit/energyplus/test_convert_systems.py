@@ -6,18 +6,17 @@ Results of EnergyPlus lie in ``idf_small/energyplus.npz``, made by ``bench/energ
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import DATA, unavailable
 
 from mascarin.energyplus import Conversion, convert
 from mascarin.energyplus.zones.doors import discharge
 from mascarin.energyplus.zones.water import mains_temperature
 from mascarin.errors import InputError
+from small_models import energyplus_small
 
 HERE = Path(__file__).resolve().parents[2]
 SMALL = HERE / "idf_small"
@@ -26,14 +25,7 @@ SMALL = HERE / "idf_small"
 @pytest.fixture(scope="module")
 def bench(data_dir: Path) -> Any:
     """The module that reads the references."""
-    sys.path.insert(0, str(HERE.parent / "bench"))
-    try:
-        import energyplus_small  # type: ignore[import-not-found]
-    finally:
-        sys.path.remove(str(HERE.parent / "bench"))
-    if not energyplus_small.WEATHER.is_file():
-        unavailable(f"no weather at {energyplus_small.WEATHER}", DATA)
-    return energyplus_small
+    return energyplus_small()
 
 
 def changed(tmp_path: Path, name: str, *changes: tuple[str, str]) -> Conversion:

@@ -7,7 +7,6 @@ with an effect that was measured, and what EnergyPlus refuses is refused.
 
 from __future__ import annotations
 
-import sys
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -15,12 +14,12 @@ from typing import Any
 import idfkit
 import numpy as np
 import pytest
-from conftest import DATA, unavailable
 
 from mascarin.energyplus import Conversion, convert, terminal_lines, was_edited, yaml_text
 from mascarin.energyplus.ledger import IDLE_FIELDS
 from mascarin.energyplus.model.year import Day, ahead, year_of
 from mascarin.errors import InputError
+from small_models import energyplus_small
 
 HERE = Path(__file__).resolve().parents[2]
 SMALL = HERE / "idf_small"
@@ -77,14 +76,7 @@ CARRIED = [name for name in NAMES if name not in REFUSED and name not in LISTED]
 @pytest.fixture(scope="module")
 def bench(data_dir: Path) -> Any:
     """The module that makes the table and the references."""
-    sys.path.insert(0, str(HERE.parent / "bench"))
-    try:
-        import energyplus_small  # type: ignore[import-not-found]
-    finally:
-        sys.path.remove(str(HERE.parent / "bench"))
-    if not energyplus_small.WEATHER.is_file():
-        unavailable(f"no weather at {energyplus_small.WEATHER}", DATA)
-    return energyplus_small
+    return energyplus_small()
 
 
 def months(bench: Any, conversion: Conversion) -> tuple[dict[str, Any], Any]:

@@ -31,8 +31,9 @@ _LEAST_DEPTH: Final = 2.0
 #: Kiva takes the wind at the height of the ground's roughness, and a ground of great roughness. A constant
 #: coefficient with which the loads of a small room in Chicago are those of EnergyPlus 25.2. [W/(m2 K)]
 _FILM: Final = 20.0
-#: Sizes that a block allows. [m]
+#: Sizes of a floor, and the extent of the soil, that a block allows. [m]
 _SIZES: Final = (1.0, 500.0)
+_FARTHEST: Final = 200.0
 #: Of a material without mass that is insulation. [m]
 _THIN: Final = 0.05
 _EXTENTS: Final = (0.05, 10.0)
@@ -137,8 +138,8 @@ def _soil(context: Context, surface: IdfSurface) -> Section:
         "absorptance": number("ground_solar_absorptivity", 0.9),
         "emissivity": number("ground_thermal_absorptivity", 0.9),
         "outdoor_film": _FILM,
-        "far": min(number("far_field_width", 40.0), 200.0),
-        "depth": max(_NO_WATER if depth is None else depth, _LEAST_DEPTH),
+        "far": min(number("far_field_width", 40.0), _FARTHEST),
+        "depth": min(max(_NO_WATER if depth is None else depth, _LEAST_DEPTH), _FARTHEST),
     }
     if boundary == "groundwater" and context.yearly_air is not None:
         soil["deep_temperature"] = round(context.yearly_air, 3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any, Final
 
@@ -36,8 +37,8 @@ _SAME_PLACE: Final = (1.0, 1.0, 100.0, 0.0)
 #: Lines before the data of a weather file, and bytes in which they are.
 _HEADER_LINES: Final = 8
 _HEADER_BYTES: Final = 65_536
-#: Column of the air temperature, from 0.
-_AIR: Final = 6
+#: Column of the air temperature, from 0, and what stands there for a missing one.
+_AIR, _MISSING = 6, "99.9"
 #: Temperature of the ground where the file gives none, as in EnergyPlus [degC].
 _GROUND: Final = 18.0
 
@@ -113,11 +114,18 @@ def _special_days(path: Path) -> dict[str, bool]:
 
 
 def _yearly_air(path: Path) -> float | None:
-    """Mean of the outdoor air over a weather file; None if it has none. [degC]"""
+    """Mean of the outdoor air over a weather file; None if a value of it is no temperature. [degC]
+
+    What is wrong with a file is said where it is read for a run.
+    """
     rows = content(require_regular(path)).decode("latin-1").splitlines()[_HEADER_LINES:]
-    cells = [row.split(",", _AIR + 1) for row in rows]
-    values = [float(row[_AIR]) for row in cells if len(row) > _AIR and row[_AIR].strip() not in ("", "99.9")]
-    return sum(values) / len(values) if values else None
+    cells = [row.split(",", _AIR + 1) for row in rows if row.strip()]
+    try:
+        values = [float(row[_AIR]) for row in cells if row[_AIR].strip() not in ("", _MISSING)]
+    except (ValueError, IndexError):
+        return None
+    mean = sum(values) / len(values) if values else math.nan
+    return mean if math.isfinite(mean) else None
 
 
 def _head(path: Path) -> list[str]:
