@@ -1,10 +1,14 @@
 """How often intervals and bands of a study contain the truths of an independent program.
 
-``python bench/coverage_foreign.py FOLDER PROGRAM [count] [first seed] [days]`` takes experiments of that
+``python bench/coverage_foreign.py FOLDER PROGRAM [count] [first] [days] [sky]`` takes experiments of that
 program (`bench/diagnosis.py` says what PROGRAM is): the LGI cell with drawn truths, six sensors with offsets
 and noise. Even seeds have laws that are among the forms of the study, odd seeds have laws that no form names.
 Each is calibrated with 5 days (or 20), with six forms. Each result is a file of FOLDER and is not computed
 again; the table of all is printed after each experiment, with intervals from resampled experiments.
+
+The infrared radiation of the sky is that of the weather file, which no model of the study has. With ``sky``
+``measured`` the study has a pyrgeometer (1 % of noise), so that all laws of even seeds are named; with
+``modelled``, the default, one is not.
 
 ``TRUTHS`` has the numbers that mean the same in both programs. Factors of convection laws have no truth,
 because none of the programs has the laws of the other outdoors; melting temperature, width and specific heat
@@ -23,6 +27,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from diagnosis import BUILDING, LAST, PERIODS, WEATHER, experiment
@@ -53,6 +58,12 @@ TRUTHS = {
     "zones.air_gap.infiltration.wind": "iw_gap",
     "zones.air_gap.infiltration.temperature": "it_gap",
 }
+#: Standard deviation of a reading of the pyrgeometer, as a part of it. [-]
+PYRGEOMETER = 0.01
+#: A sky that was measured has no error of a model by day.
+MEASURED = {"site.sky": "measured", "site.sky_diurnal": 0.0}
+#: That program has an isotropic sky in the infrared. (The numbers are those of the shipped cell.)
+ISOTROPIC = {"site.sky_exponent": 1.0}
 #: Numbers of the same melting curve, and what the program has where it draws none.
 OF_CURVE = {
     "materials.energain.melting_temperature": "Tm",
@@ -65,7 +76,23 @@ FORMS = ("outside convection", "diffuse radiation")
 DRAWS = 2000
 
 
-def study_of(folder: Path, program: Path, seed: int, days: int, true_form: bool) -> Study:
+def infrared(folder: Path, program: Path, seed: int) -> pd.Series:
+    """Readings of a pyrgeometer in an experiment. [W/m2]"""
+    sys.path.insert(0, str(folder))
+    import run_experiment as made  # written by `experiment`
+
+    place = made.WEATHER["gillot"]
+    weather = made.forcing(
+        place["epw"], f"{place['year']}-05-25", f"{place['year']}-{LAST}", place["lat"], place["lon"],
+        place["tz"], seed,
+    )  # fmt: skip
+    sky = weather["IR"].resample("15min").mean()
+    return sky * (1.0 + np.random.default_rng(seed + 1000).normal(0.0, PYRGEOMETER, len(sky)))
+
+
+def study_of(
+    folder: Path, program: Path, seed: int, days: int, true_form: bool, measured_sky: bool = False
+) -> Study:
     """The study of an experiment, with six forms or with the true one alone."""
     base = Study.from_yaml(STUDIES["lgi"])
     plan = base.plan.identification
@@ -83,15 +110,23 @@ def study_of(folder: Path, program: Path, seed: int, days: int, true_form: bool)
     if true_form:
         for part, form in zip(FORMS, ("TARP", "Hay and Davies"), strict=True):
             building = building.replace(alternatives[part][form]["changes"])
-        alternatives = {}
-    table = experiment(folder, program, seed).tz_localize("Etc/GMT-4")
+        alternatives, building = {}, building.replace(ISOTROPIC)
+    table, columns = experiment(folder, program, seed), WEATHER
+    parameters = identification.pop("parameters")
+    if measured_sky:
+        table["infrared"] = infrared(folder, program, seed).reindex(table.index)
+        columns, building = columns | {"infrared": "infrared"}, building.replace(MEASURED)
+        parameters = {
+            path: how for path, how in parameters.items() if not path.startswith(("site.sky.", "site.cloud."))
+        }
+    table = table.tz_localize("Etc/GMT-4")
     return Study(
         building=building,
-        climate=Climate.from_table(table, columns=WEATHER),
+        climate=Climate.from_table(table, columns=columns),
         measurements=Measurements.from_table(table),
         sensors={name: sensor.model_dump(exclude_unset=True) for name, sensor in base.plan.sensors.items()},
         periods={**PERIODS, "identification": DAYS[days]},
-        parameters=identification.pop("parameters"),
+        parameters=parameters,
         identification=identification,
         alternatives=alternatives,
         step="15min",
@@ -110,10 +145,10 @@ def calibrated(study: Study) -> tuple[Any, Any, dict[str, str]]:
     return estimates_of(study.context, combination), combined_intervals(study.context, combination), best
 
 
-def judged(folder: Path, program: Path, seed: int, days: int) -> dict[str, Any]:
+def judged(folder: Path, program: Path, seed: int, days: int, measured_sky: bool) -> dict[str, Any]:
     """Calibrate one experiment and compare with its truths."""
     began, named = time.process_time(), seed % 2 == 0
-    study = study_of(folder, program, seed, days, true_form=False)
+    study = study_of(folder, program, seed, days, False, measured_sky)
     fit, bands, best = calibrated(study)
     truth = FIXED | json.loads((folder / f"exp{seed}_truth.json").read_text())["truth"]
     names = {**TRUTHS, "site.ground_reflectance": "rho_ground", **(OF_CURVE if named else {})}
@@ -135,7 +170,7 @@ def judged(folder: Path, program: Path, seed: int, days: int) -> dict[str, Any]:
         "half": dict(zip(sensors, half.tolist(), strict=True)),
     }
     if named:
-        _, alone, _ = calibrated(study_of(folder, program, seed, days, true_form=True))
+        _, alone, _ = calibrated(study_of(folder, program, seed, days, True, measured_sky))
         result["wider"] = dict(zip(sensors, (half / alone.half_width.mean(axis=0)).tolist(), strict=True))
     return result | {"processor_seconds": time.process_time() - began}
 
@@ -148,10 +183,10 @@ def resampled(values: list[Any], share: Callable[[list[Any]], float]) -> str:
     return f"{100 * share(values):.1f} % ({100 * low:.1f} to {100 * high:.1f})"
 
 
-def table(folder: Path, days: int) -> None:
+def table(folder: Path, kind: str) -> None:
     """Print what all experiments of a folder have shown."""
-    results = [json.loads(path.read_text()) for path in sorted(folder.glob(f"coverage-{days}-*.json"))]
-    print(f"\n{days} days | experiments | parameters inside | blind values, by sensor")
+    results = [json.loads(path.read_text()) for path in sorted(folder.glob(f"{kind}-[0-9]*.json"))]
+    print(f"\n{kind} | experiments | parameters inside | blind values, by sensor")
     for named in (True, False):
         rows = [result for result in results if result["named"] is named]
         if not rows:
@@ -178,13 +213,16 @@ def main() -> None:
         print(__doc__)
         return
     folder, program = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-    count, first, days = (int(text) for text in (*sys.argv[3:], *("4", "0", "5")[len(sys.argv) - 3 :]))
+    given = sys.argv[3:]
+    *numbers, sky = [*given, *("4", "0", "5", "modelled")[len(given) :]]
+    count, first, days = (int(text) for text in numbers)
+    kind = f"coverage-{days}" + ("-measured" if sky == "measured" else "")
     folder.mkdir(parents=True, exist_ok=True)
     for seed in range(first, first + count):
-        path = folder / f"coverage-{days}-{seed}.json"
+        path = folder / f"{kind}-{seed}.json"
         if path.exists():
             continue
-        result = judged(folder, program, seed, days)
+        result = judged(folder, program, seed, days, sky == "measured")
         part = path.with_suffix(".part")
         part.write_text(json.dumps(result, indent=1))
         part.replace(path)
@@ -192,7 +230,7 @@ def main() -> None:
         blind = [round(100 * share) for share in result["bands"]["blind"].values()]
         print(f"{seed}: {result['form'] or 'as described'}; missed {missed}; blind {blind} %; "
               f"{result['processor_seconds']:.0f} s", flush=True)  # fmt: skip
-        table(folder, days)
+        table(folder, kind)
 
 
 if __name__ == "__main__":

@@ -80,3 +80,44 @@ def test_parameters_of_the_model_keep_the_model(tmp_path: Path, denver: mc.Clima
     assert swept[1] - swept[0] > 5.0
     run = mc.simulate(plain, denver, parameters={"site.sky.a": 0.6}, **options)
     assert float(run["sky_temperature"].mean()) == pytest.approx(float(swept[0]), abs=1e-9)
+
+
+def test_a_diurnal_part_is_the_sine_of_the_altitude_of_the_sun(tmp_path: Path, denver: mc.Climate) -> None:
+    """Emission with it less that without, beside the altitude of the sun by pvlib."""
+    import pvlib
+
+    options: dict[str, Any] = {
+        "start": "2001-06-20", "end": "2001-06-23", "step": "30min", "outputs": ["sky_temperature"],
+    }  # fmt: skip
+    plain, more = (
+        mc.simulate(building(tmp_path, f", sky: martin_berdahl{key}"), denver, **options)
+        for key in ("", ", sky_diurnal: 30")
+    )
+    emission = [5.670374419e-8 * (run["sky_temperature"] + 273.15) ** 4 for run in (plain, more)]
+    times = plain.index
+    altitude = pvlib.solarposition.get_solarposition(times, 39.83, -104.65)["elevation"]
+    expected = 30.0 * np.sin(np.radians(altitude))
+    found = np.asarray(emission[1] - emission[0])
+    assert expected.min() < -10.0
+    assert expected.max() > 28.0
+    assert np.abs(found - expected.to_numpy())[1:].max() < 0.1
+
+
+def test_an_isotropic_sky_cools_walls_more(tmp_path: Path, denver: mc.Climate) -> None:
+    """A wall receives 1/2 of the radiation of an isotropic sky, and 0.354 of one that is warmer below."""
+    text = (
+        (BUILDING % "")
+        .replace("tilt: 0,", "tilt: 90, azimuth: 0,")
+        .replace("absorptance: 0.6", "absorptance: 0")
+    )
+    means = []
+    for key in (", sky_exponent: 1.5", ", sky_exponent: 1.0", ""):
+        site = f"timezone: UTC-7, sky: {{kind: offset, depression: 20}}{key}"
+        (tmp_path / "b.yaml").write_text(text.replace("timezone: UTC-7", site), encoding="utf-8")
+        options: dict[str, Any] = {**YEAR, "outputs": ["roof.outside_temperature"], "end": "2001-03-01"}
+        run = mc.simulate(mc.load(tmp_path / "b.yaml"), denver, start="2001-01-01", **options)
+        means.append(float(run["roof.outside_temperature"].mean()))
+    assert means[0] == pytest.approx(means[2], abs=1e-9)
+    # 0.9 s 4 T^3 20 K (0.5 - 0.354), over film and radiation, 15 + 0.9 4 s T^3; the room takes a little.
+    slope = 4.0 * 5.670374419e-8 * 262.0**3
+    assert means[0] - means[1] == pytest.approx(0.9 * slope * 20.0 * 0.1464 / (15.0 + 0.9 * slope), rel=0.15)

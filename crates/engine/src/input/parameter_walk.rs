@@ -109,7 +109,8 @@ walk!(Description { site, materials, constructions, zones, air_paths, directed_f
     thermal_bridges, openings, vents, controls, surfaces, heat_sources, sensors, humidity, outputs }
     plain { parameters, shades, channels });
 
-walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse, horizon });
+walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud, sky_exponent,
+    sky_diurnal } plain { diffuse, horizon });
 impl ParameterIds for Clouds {
     fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
         match self {

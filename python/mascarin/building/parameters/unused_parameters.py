@@ -204,7 +204,9 @@ def _in_site(building: Description, all_sides: list[SurfaceSide]) -> Reasons:
     if not any((item.sunlit or item.path in parts) and item.sees_ground for item in all_sides):
         yield "site.ground_reflectance", "no tilted surface takes its irradiance from the climate"
     if not seeing:
-        yield from _all_of("site.sky", site.sky, "no surface exchanges long-wave radiation with the sky")
+        reason = "no surface exchanges long-wave radiation with the sky"
+        yield from _all_of("site.sky", site.sky, reason)
+        yield from ((f"site.{key}", reason) for key in ("sky_exponent", "sky_diurnal"))
     if not seeing or site.sky.clouded:
         yield from _all_of("site.cloud", site.cloud, "no emissivity of the sky is used")
     if not any(item.windy and has_height(item.side) for item in all_sides):

@@ -225,6 +225,8 @@ class Site(Part):
         default_factory=CloudLayer,
         description="Effect of clouds on the sky's emissivity: as a factor, or as an opaque layer",
     )
+    sky_exponent: q.SkyExponent | None = None
+    sky_diurnal: q.SkyDiurnal | None = None
     diffuse: Diffuse = Field(
         DEFAULT_DIFFUSE, description="Model of diffuse short-wave radiation on a tilted plane"
     )

@@ -138,6 +138,8 @@ from mascarin.building.quantities.site import (
     Latitude,
     Longitude,
     MastHeight,
+    SkyDiurnal,
+    SkyExponent,
     WindExponent,
 )
 from mascarin.building.quantities.surfaces import (
@@ -314,6 +316,8 @@ __all__ = [
     "Shelter",
     "ShutterResistance",
     "SideRatio",
+    "SkyDiurnal",
+    "SkyExponent",
     "SkyView",
     "SolarHeatGain",
     "SolarToAir",

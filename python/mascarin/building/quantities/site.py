@@ -52,6 +52,26 @@ AirSpecificHeat = Annotated[
         Limits(at_least=500, at_most=5000),
     ),
 ]
+SkyExponent = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Exponent of the view factor of the sky, of its long-wave radiation on a tilted surface: 1 for an "
+        "isotropic sky, 1.5 for one that is warmer near the horizon; none: 1.5",
+        Span(1.0, 1.6, "an isotropic sky, and a clear one (Unsworth & Monteith 1975)"),
+        Limits(at_least=0.5, at_most=3.0),
+    ),
+]
+SkyDiurnal = Annotated[
+    Number,
+    Quantity(
+        "W/m2",
+        "Infrared radiation of the sky beside that of its model, times the sine of the altitude of the sun "
+        "(negative at night); none: 0",
+        Within(40.0, "models of the sky are 19 W/m2 wrong within a day (Flerchinger et al. 2009)"),
+        Limits(at_least=-150.0, at_most=150.0),
+    ),
+]
 HorizonAzimuth = Annotated[
     Number,
     Quantity(

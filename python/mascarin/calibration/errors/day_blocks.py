@@ -220,6 +220,11 @@ class DayGaussian:
         return other
 
     @property
+    def weighted_columns(self) -> Floats:
+        """Columns times the inverses of the blocks, zero where nothing is there, shape (D, n, q). [1/unit]"""
+        return self._added[0]
+
+    @property
     def information(self) -> Floats:
         """What these values add to the precision of the coefficients, shape (q, q). [-]"""
         return self._added[1]

@@ -5,7 +5,8 @@ The method: `mascarin.calibration.errors.joint_posterior`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -48,6 +49,8 @@ SAMPLED: Final = (
 )
 """What sampling changes, for reports."""
 
+#: Factor of the intervals by blocks of days from which it is said. [-]
+_SEEN: Final = 1.05
 #: What the residuals of its warnings are without.
 _BESIDE: Final = ", beside the estimated errors of sensors and model"
 _MAX_STEPS: Final = 8
@@ -240,10 +243,20 @@ def _reported(
         uncertainty=uncertainty,
         on_bound=on_bounds(problem, z, _outward(z, distribution), uncertainty),
         warnings=said if chains is None else (*said, *chains.warnings),
-        uncertainty_method=METHOD if chains is None else f"{METHOD}; {SAMPLED}",
+        uncertainty_method="; ".join(_methods(distribution)),
         posterior=chains,
         reason=f"{fit.reason}, then estimated together with the errors of sensors and model",
     )
+
+
+def _methods(distribution: JointPosterior) -> Iterator[str]:
+    """How the intervals were computed, in parts of a sentence."""
+    yield METHOD
+    if distribution.chains is not None:
+        yield SAMPLED
+    factor = math.sqrt(distribution.dispersion)
+    if factor > _SEEN:
+        yield f"what the data say made wider by {factor:.2f}, by which blocks of days differ more than days"
 
 
 def _on_ends(z: Floats) -> Floats:

@@ -18,6 +18,7 @@ Gelman A. et al. (2013), Bayesian Data Analysis, chapter 14 (linear models with 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -26,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.calibration.errors.block_dispersion import block_dispersion
 from mascarin.calibration.errors.bounded_coefficients import best_within, ends_of, moments_within
 from mascarin.calibration.errors.covariance_sampling import CovarianceSample, sample_covariances
 from mascarin.calibration.errors.discrepancy import DayData, Discrepancy, hour_basis
@@ -89,6 +91,9 @@ class JointPosterior:
         Chains of the parameters and errors of sensors, where the model itself was sampled.
     other_days : int
         Days of other experiments that have the same parameters. [-]
+    dispersion : float
+        Variance of what blocks of days say of the coefficients, over that of independent days, see
+        `mascarin.calibration.errors.block_dispersion`. [-]
     """
 
     z: Floats
@@ -107,6 +112,7 @@ class JointPosterior:
     left_out_sd: Floats
     chains: PosteriorSample | None = None
     other_days: int = 0
+    dispersion: float = 1.0
 
     def of_parameters(self, columns: Sequence[int]) -> JointPosterior:
         """The same distribution of some of the parameters, with all errors of the experiment."""
@@ -165,15 +171,14 @@ class JointPosterior:
         return np.asarray(np.maximum(factor, 1.0) - weight * np.maximum(1.0 - factor, 0.0))
 
     def widened(self, confidence: float = 0.95) -> Floats:
-        """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
+        """Return the sample of the positions, with the spread of `quantile` and `dispersion`, (n, P). [-]
 
         Only what the data say is as doubtful as the errors; the priors are as stated.
         """
         from scipy import stats
 
-        factor = self.quantile(confidence, other_days=self.other_days) / float(
-            stats.norm.ppf(0.5 + 0.5 * confidence)
-        )
+        factor = math.sqrt(self.dispersion) * self.quantile(confidence, other_days=self.other_days)
+        factor /= float(stats.norm.ppf(0.5 + 0.5 * confidence))
         count = self.sample.shape[1]
         # An estimate on its bound has no variance.
         curvature = 1.0 / np.maximum(np.diag(self.covariance)[:count], np.finfo(np.float64).tiny)
@@ -202,7 +207,7 @@ class JointPosterior:
         about = self.mean.copy()
         about[: z.size] -= z
         variance = np.einsum("tsq,qr,tsr->ts", columns, self.covariance, columns, optimize=True)
-        return columns @ about, np.maximum(variance, 0.0)
+        return columns @ about, self.dispersion * np.maximum(variance, 0.0)
 
     def effects(self, jacobian: Floats, effects_of_errors: Floats, hours: Floats) -> Floats:
         """Columns of all coefficients at any instants.
@@ -327,7 +332,7 @@ def joint_posteriors(
     of_all = JointPosterior(
         z, bounded_mean, bounded, bounded_sample[:, :count], draws.typical[0], further, none,
         after.gaussian.log_density(after.errors), scale[:count], beyond, unlimited, none, none, none,
-        chains=chains,
+        chains=chains, dispersion=block_dispersion(after.gaussian, after.errors, stated[0].persistence),
     )  # fmt: skip
     return tuple(_by_experiment(of_all, after, names, draws.typical))
 

@@ -154,9 +154,10 @@ def _sky(name: str) -> Iterator[Check]:
         "cloud_cover": setup.steady(cloud),
     }
     for sky, sky_emissivity in emissivities.items():
-        for tilt in (0.0, 60.0):
+        for tilt, exponent in ((0.0, None), (60.0, None), (60.0, 1.0), (60.0, 2.0)):
+            more = "" if exponent is None else f", sky_exponent: {exponent}"
             text = f"""\
-site: {{latitude: 0, longitude: 0, altitude: 0, timezone: UTC, sky: {sky}}}
+site: {{latitude: 0, longitude: 0, altitude: 0, timezone: UTC, sky: {sky}{more}}}
 materials: {{sheet: {{conductivity: 1, density: 1000, specific_heat: 1000}}}}
 constructions: {{sheet: {{layers: [{{material: sheet, thickness: 0.01}}]}}}}
 surfaces:
@@ -168,16 +169,16 @@ surfaces:
                 text, end, columns, step=setup.HOUR, outputs=["plate.outside_temperature"]
             ).records[-1, 0]
             view = 0.5 * (1.0 + math.cos(math.radians(tilt)))
-            beta = math.sqrt(view)
-            # Radiation of the sky, part of it (1 - beta) that of the air, and a ground as warm as the air.
-            arriving = view * beta * sky_emissivity * emission(air) + (1.0 - view * beta) * emission(air)
+            of_sky = view ** (1.5 if exponent is None else exponent)
+            # Radiation of the sky, which near the horizon is that of the air, and of a ground as warm.
+            arriving = of_sky * sky_emissivity * emission(air) + (1.0 - of_sky) * emission(air)
 
             def heat(surface: float, arriving: float = arriving) -> float:
                 return emissivity * (arriving - emission(surface)) + convection * (air - surface)
 
             expected = float(brentq(heat, air - 60.0, air + 20.0, xtol=1e-12))
             yield Check.near(
-                name, f"plate of {tilt:g} deg, {sky}", "degC", temperature, expected, within=TOLERANCE
+                name, f"plate of {tilt:g} deg, {sky}{more}", "degC", temperature, expected, within=TOLERANCE
             )
 
 
@@ -332,7 +333,7 @@ CASES: Final = (
         name="plate under the sky",
         problem="An insulated plate, horizontal and at 60 deg, convection 6 W/(m2 K), emissivity 0.9, "
         "air 18 degC, dew point 9 degC, 4 tenths of cloud; steady, at night.",
-        answer="e (E_in - s T^4) + h (Ta - T) = 0, E_in = F b E_sky + (1 - F b) E_air, b = sqrt(F)",
+        answer="e (E_in - s T^4) + h (Ta - T) = 0, E_in = F^n E_sky + (1 - F^n) E_air, n = 3/2, 1 and 2",
         source="Martin & Berdahl 1984, doi:10.1016/0038-092X(84)90162-2; Clark & Allen 1978; Li et al. "
         "2017, doi:10.1016/j.solener.2017.01.006; Walton 1983 (b)",
         tolerance="1e-6 K: the tolerance of Newton's iteration.",

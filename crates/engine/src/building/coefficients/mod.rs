@@ -116,7 +116,7 @@ impl<S: Real> Coefficients<S> {
             vents: Vents::new(plan, &values),
             bridges: description.thermal_bridges.iter().map(|bridge| Bridge::new(bridge, &values)).collect(),
             ground_reflectance: values.get(site.ground_reflectance),
-            sky: SkyEmission::new(&site.sky, &site.cloud, &values),
+            sky: SkyEmission::new(site, &values),
             outputs: description.outputs.iter().map(|output| derived(output, &values)).collect(),
             sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),
         }

@@ -179,9 +179,8 @@ fn outdoors<S: Real>(plan: &Plan, index: SideId, side: &Side, values: &Values<'_
         plane,
         free,
         heading,
-        // F_sky sqrt(F_sky): near the horizon the sky has the temperature of the air, and so have the walls that cover a part.
         to_sky: if side.exposure.sky {
-            (sky_view * sky_view.max(S::constant(1e-300)).sqrt()).scale(open)
+            to_sky(sky_view, plan.description.site.sky_exponent, values).scale(open)
         } else {
             S::zero()
         },
@@ -190,6 +189,18 @@ fn outdoors<S: Real>(plan: &Plan, index: SideId, side: &Side, values: &Values<'_
             OutdoorLongwave::Linearised { reference } => Some(Emission::Linearised(values.get(reference))),
             OutdoorLongwave::None => None,
         },
+    }
+}
+
+/// Part of the emission of a sky that a surface receives, which sees a part of it [-]: `F_sky^exponent`.
+///
+/// Near the horizon the sky has the temperature of the air, and so have the walls that cover a part: `F_sky sqrt(F_sky)` (Walton 1983,
+/// NBSIR 83-2655), where no exponent is given. An isotropic sky has the exponent 1.
+fn to_sky<S: Real>(sky_view: S, exponent: Option<ParamId>, values: &Values<'_, S>) -> S {
+    let seen = sky_view.max(S::constant(1e-300));
+    match exponent {
+        None => sky_view * seen.sqrt(),
+        Some(id) => seen.powf(values.get(id)),
     }
 }
 
@@ -253,6 +264,19 @@ mod tests {
         // Wind from the south is normal to the south wall: the components of its azimuth are north -1, east 0.
         let [north, east] = outdoors_of(0).heading;
         assert!((north + 1.0).abs() < 1e-15 && east.abs() < 1e-15);
+    }
+
+    /// Of a quarter of the sky: 1/8 where none is given, 1/4 of an isotropic sky, 1/16 with the exponent 2; nothing of none.
+    #[test]
+    fn part_of_the_sky_by_its_exponent() {
+        let numbers = [1.0, 1.5, 2.0];
+        let values = Values::new(&numbers[..]);
+        for (exponent, expected) in [(None, 0.125), (Some(0), 0.25), (Some(1), 0.125), (Some(2), 0.0625)] {
+            let exponent = exponent.map(ParamId);
+            assert!((to_sky(0.25, exponent, &values) - expected).abs() < 1e-15);
+            assert!(to_sky(0.0, exponent, &values).abs() < 1e-200);
+            assert!((to_sky(1.0, exponent, &values) - 1.0).abs() < 1e-15);
+        }
     }
 
     /// The normal of the inside surface of the roof points down, that of the floor up.

@@ -26,6 +26,12 @@ pub struct Site {
     pub sky: Sky,
     /// Effect of clouds on the sky's long-wave emission.
     pub cloud: Clouds,
+    /// Exponent of the view factor of the sky in what surfaces receive of its emission [-]; none: 3/2.
+    #[serde(default)]
+    pub sky_exponent: Option<ParamId>,
+    /// Emission of the sky in proportion to the sine of the sun's altitude, beside that of the model [W/m2]; none: 0.
+    #[serde(default)]
+    pub sky_diurnal: Option<ParamId>,
     /// Model of the sky's diffuse short-wave radiation: a file of `physics/diffuse/laws`.
     pub diffuse: String,
     /// Azimuth, rising below 360, and elevation of what hides the sky [deg]; empty: nothing.

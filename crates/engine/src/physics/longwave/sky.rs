@@ -5,7 +5,7 @@
 
 use super::skies::{self, with_laws};
 use super::sky_model::{SkyModel, SkyValue, SkyWeather};
-use crate::input::description::{Clouds, PublishedLaw, Sky};
+use crate::input::description::{Clouds, PublishedLaw, Site, Sky};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::{KELVIN, SIGMA};
@@ -131,6 +131,8 @@ impl<S: Real> TextSky<S> {
 pub struct SkyEmission<S> {
     law: Law<S>,
     clouds: CloudEffect<S>,
+    /// Beside that of the model, for the sun in the zenith [W/m2].
+    diurnal: Option<S>,
 }
 
 impl<S: Real> SkyEmission<S> {
@@ -139,7 +141,13 @@ impl<S: Real> SkyEmission<S> {
     /// # Panics
     /// For a kind that is no model: a plan refuses it.
     #[must_use]
-    pub fn new(sky: &Sky, clouds: &Clouds, values: &Values<'_, S>) -> Self {
+    pub fn new(site: &Site, values: &Values<'_, S>) -> Self {
+        let diurnal = site.sky_diurnal.map(|id| values.get(id));
+        Self { diurnal, ..Self::of_model(&site.sky, &site.cloud, values) }
+    }
+
+    /// Without a part of its own by day.
+    pub(crate) fn of_model(sky: &Sky, clouds: &Clouds, values: &Values<'_, S>) -> Self {
         let law = match sky {
             Sky::Law(law) => {
                 Law::named(&law.kind, &Numbers::new(values, law)).expect("a plan knows its models of the sky")
@@ -152,7 +160,7 @@ impl<S: Real> SkyEmission<S> {
                 }))
             }
         };
-        Self { law, clouds: CloudEffect::new(clouds, values) }
+        Self { law, clouds: CloudEffect::new(clouds, values), diurnal: None }
     }
 
     /// The model, where it is written as text and says where it holds.
@@ -177,6 +185,16 @@ impl<S: Real> SkyEmission<S> {
     /// Downward emission on a horizontal plane [W/m2].
     #[inline(always)]
     pub fn at(&self, weather: &SkyWeather) -> S {
+        let emission = self.of_weather(weather);
+        match self.diurnal {
+            Some(diurnal) => emission + diurnal.scale(weather.sun_up),
+            None => emission,
+        }
+    }
+
+    /// Emission that the model has [W/m2].
+    #[inline(always)]
+    fn of_weather(&self, weather: &SkyWeather) -> S {
         let emissivity = match self.law.sky(weather) {
             SkyValue::Emission(emission) => return emission,
             SkyValue::Temperature(temperature) => return temperature.pow4().scale(SIGMA),
@@ -206,6 +224,21 @@ mod tests {
         assert_close(emission(&law("measured", &["scale"]), &[1.1], CLOUDS), 1.1 * 333.0);
         // No more than a black body.
         assert_close(emission(&martin, &[1.2, 0.0, 0.0], CLOUDS), 418.766);
+    }
+
+    /// With the sun at 30 degrees above or below the horizon half of the diurnal part: 324.248 + 0.5 20 W/m2.
+    #[test]
+    fn the_diurnal_part_follows_the_sun() {
+        let none = Clouds::Factor([ParamId(0); 3]);
+        let numbers = [0.711, 0.56, 0.73];
+        let values = Values::new(&numbers[..]);
+        let sky = SkyEmission::of_model(&law("martin_berdahl", &["a", "b", "c"]), &none, &values);
+        let sky = SkyEmission { diurnal: Some(20.0), ..sky.with_clouds(NO_CLOUDS) };
+        let at =
+            |sun_up| sky.at(&SkyWeather { air: 293.15, dew_point: 10.0, sun_up, ..SkyWeather::default() });
+        assert_close(at(0.0), 0.7743 * 418.766);
+        assert_close(at(0.5) - at(0.0), 10.0);
+        assert_close(at(0.0) - at(-0.5), 10.0);
     }
 
     /// The same models as text; a law with clouds of its own has no effect of clouds.

@@ -42,6 +42,8 @@ pub struct SkyWeather {
     pub(crate) cloud_cover: f64,
     /// Measured emission of the sky downwards on a horizontal plane [W/m2].
     pub(crate) infrared: f64,
+    /// Sine of the sun's altitude, negative at night [-].
+    pub(crate) sun_up: f64,
 }
 
 impl SkyWeather {
@@ -53,6 +55,7 @@ impl SkyWeather {
             dew_point: row[channel::DEW_POINT],
             cloud_cover: row[channel::CLOUD_COVER],
             infrared: row[channel::INFRARED],
+            sun_up: row[channel::SUN_UP],
         }
     }
 
@@ -64,6 +67,7 @@ impl SkyWeather {
             dew_point: line(first.dew_point, second.dew_point),
             cloud_cover: line(first.cloud_cover, second.cloud_cover),
             infrared: line(first.infrared, second.infrared),
+            sun_up: line(first.sun_up, second.sun_up),
         }
     }
 

@@ -13,9 +13,9 @@ pub(crate) fn law(kind: &str, names: &[&str]) -> Sky {
 
 /// Emission of a sky with an effect of clouds [W/m2].
 pub(crate) fn emission(sky: &Sky, numbers: &[f64], clouds: CloudEffect<f64>) -> f64 {
-    let weather = SkyWeather { air: 293.15, dew_point: 10.0, cloud_cover: 5.0, infrared: 333.0 };
+    let weather = SkyWeather { air: 293.15, dew_point: 10.0, cloud_cover: 5.0, infrared: 333.0, sun_up: 0.0 };
     let none = Clouds::Factor([ParamId(0); 3]);
-    SkyEmission::new(sky, &none, &Values::new(numbers)).with_clouds(clouds).at(&weather)
+    SkyEmission::of_model(sky, &none, &Values::new(numbers)).with_clouds(clouds).at(&weather)
 }
 
 #[track_caller]

@@ -79,6 +79,8 @@ impl Builder {
                 add("site.cloud.c2", -0.0035),
                 add("site.cloud.c3", 0.00028),
             ]),
+            sky_exponent: None,
+            sky_diurnal: None,
             diffuse: "perez".to_owned(),
             horizon: Vec::new(),
         };
