@@ -50,7 +50,7 @@ SAMPLED: Final = (
 """What sampling changes, for reports."""
 
 #: Factor of the intervals by blocks of days from which it is said. [-]
-_SEEN: Final = 1.05
+_NOTED: Final = 1.05
 #: What the residuals of its warnings are without.
 _BESIDE: Final = ", beside the estimated errors of sensors and model"
 _MAX_STEPS: Final = 8
@@ -255,7 +255,7 @@ def _methods(distribution: JointPosterior) -> Iterator[str]:
     if distribution.chains is not None:
         yield SAMPLED
     factor = math.sqrt(distribution.dispersion)
-    if factor > _SEEN:
+    if factor > _NOTED:
         yield f"what the data say made wider by {factor:.2f}, by which blocks of days differ more than days"
 
 
