@@ -22,6 +22,8 @@ def main() -> int:
     """
     signal.signal(signal.SIGINT, _end)
     signal.signal(signal.SIGTERM, _end)
+    # Pydantic would look for plugins in all packages that are installed: a command uses none.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from mascarin.cli import main as run  # sets handlers of its own
 
     return run()

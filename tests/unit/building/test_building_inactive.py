@@ -12,6 +12,8 @@ import pytest
 from building_samples import everything, room
 from mascarin import _engine
 from mascarin.building import Building
+from mascarin.building.outputs import locations
+from mascarin.building.parts import measured_sun
 
 
 def inactive(building: Building) -> dict[str, str]:
@@ -144,3 +146,14 @@ def test_the_engine_agrees(case: int) -> None:
 def turnover(run: dict[str, Any]) -> dict[str, float]:
     """The ledger of a run [J]."""
     return {key: value for key, value in run.items() if isinstance(value, float)}
+
+
+def test_all_surfaces_are_looked_through_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many ask: in a row of 1000 rooms, each of 5000 surfaces looked through all."""
+    looked, sides = [], measured_sun._sides
+    monkeypatch.setattr(measured_sun, "_sides", lambda building: looked.append(1) or sides(building))
+    building = room()
+    assert len(building.surfaces) > 1
+    assert inactive(building)
+    assert len(looked) <= 2  # for measured irradiances, and for their paths
+    assert locations._lit_zones(building) is locations._lit_zones(building)

@@ -104,9 +104,12 @@ pub(crate) struct Parts {
     pub(crate) detached_walls: Vec<usize>,
     /// Their surfaces in zones.
     pub(crate) zone_surfaces: Vec<SideId>,
-    /// Walls whose properties depend on temperature, and the cells of each.
+    /// Walls whose properties depend on temperature, and their cells, those that follow each other together.
     pub(crate) nonlinear_walls: Vec<usize>,
     pub(crate) nonlinear_cells: Vec<Range<usize>>,
+    /// Those of these walls in which something melts, and the cells of the others.
+    pub(crate) melting_walls: Vec<usize>,
+    pub(crate) solid_cells: Vec<Range<usize>>,
     /// Those of these walls that zone fronts eliminate, all of them windows, and the others.
     pub(crate) front_windows: Vec<usize>,
     pub(crate) coupled_walls: Vec<usize>,
@@ -121,16 +124,16 @@ pub(crate) struct Parts {
     pub(crate) wind_changes_balances: bool,
 }
 
-/// Surfaces in order, those that follow each other together.
-fn neighbours(surfaces: impl Iterator<Item = SideId>) -> Vec<Range<usize>> {
-    let mut ranges: Vec<Range<usize>> = Vec::new();
-    for place in surfaces.map(SideId::index) {
-        match ranges.last_mut() {
-            Some(last) if last.end == place => last.end += 1,
-            _ => ranges.push(place..place + 1),
+/// Ranges in order, those that follow each other together.
+fn together(ranges: impl Iterator<Item = Range<usize>>) -> Vec<Range<usize>> {
+    let mut all: Vec<Range<usize>> = Vec::new();
+    for range in ranges {
+        match all.last_mut() {
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => all.push(range),
         }
     }
-    ranges
+    all
 }
 
 /// Surfaces whose laws change during a run.
@@ -158,13 +161,17 @@ impl Parts {
             (0..plan.walls.len()).partition(|&wall| plan.walls[wall].nonlinear);
         let exterior = |surface: SideId| plan.surfaces[surface].role == SideRole::Exterior;
         let (linear, nonlinear) = (|| linear_walls.iter().copied(), || nonlinear_walls.iter().copied());
-        let cells = nonlinear_walls.iter().map(|&wall| &plan.walls[wall]);
+        let cells =
+            |wall: usize| plan.walls[wall].first_cell..plan.walls[wall].first_cell + plan.walls[wall].len();
+        let melts = |&wall: &usize| !coefficients.walls[wall].pcm.is_empty();
         let mut parts = Self {
             thick_walls: linear().filter(|&wall| plan.walls[wall].thick).collect(),
             shared_walls: linear().filter(|&wall| !plan.walls[wall].condensed_in_zone).collect(),
             detached_walls: linear().filter(|&wall| SideId::pair(wall).into_iter().all(exterior)).collect(),
             zone_surfaces: linear().flat_map(SideId::pair).filter(|&surface| !exterior(surface)).collect(),
-            nonlinear_cells: cells.map(|wall| wall.first_cell..wall.first_cell + wall.len()).collect(),
+            nonlinear_cells: together(nonlinear().map(cells)),
+            melting_walls: nonlinear().filter(melts).collect(),
+            solid_cells: together(nonlinear().filter(|wall| !melts(wall)).map(cells)),
             front_windows: nonlinear().filter(|&wall| plan.walls[wall].condensed_in_zone).collect(),
             coupled_walls: nonlinear().filter(|&wall| !plan.walls[wall].condensed_in_zone).collect(),
             linear_walls,
@@ -179,13 +186,15 @@ impl Parts {
             parts.sort(plan, coefficients, surface);
         }
         let surfaces = &parts.surfaces;
+        // They are in order.
         let linearised = |surface: &SideId| {
             plan.walls[surface.wall()].nonlinear
                 || plan.walls[surface.wall()].thick
-                || surfaces.nonlinear.contains(surface)
-                || surfaces.radiant.contains(surface)
+                || surfaces.nonlinear.binary_search(surface).is_ok()
+                || surfaces.radiant.binary_search(surface).is_ok()
         };
-        parts.linearised = neighbours(plan.surfaces.ids().filter(linearised));
+        let places = plan.surfaces.ids().filter(linearised).map(SideId::index);
+        parts.linearised = together(places.map(|place| place..place + 1));
         parts.other_surfaces = parts
             .surfaces
             .filter(|surface| exterior(surface) && !plan.walls[surface.wall()].condensed_in_zone);

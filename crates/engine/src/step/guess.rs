@@ -156,7 +156,13 @@ impl<S: Real> Unknowns<S> {
         for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
             *guess = line(from, to, ratio);
         }
-        for &w in &model.parts.nonlinear_walls {
+        for cells in &model.parts.solid_cells {
+            let ends = from.cells[cells.clone()].iter().zip(&to.cells[cells.clone()]);
+            for (guess, (&from, &to)) in self.cells[cells.clone()].iter_mut().zip(ends) {
+                *guess = line(from, to, ratio);
+            }
+        }
+        for &w in &model.parts.melting_walls {
             let (numbers, cells) = (&model.coefficients.walls[w], model.cells(w));
             let ends = from.cells[cells.clone()].iter().zip(&to.cells[cells.clone()]);
             let laws = numbers.cells.iter().zip(&memory[cells.clone()]);

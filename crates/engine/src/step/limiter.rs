@@ -28,8 +28,11 @@ impl<S: Real> StageSolver<'_, S> {
             blend(active, self.iterate.surfaces.places_mut(surfaces), solution);
         }
         blend(active, &mut self.iterate.air, &self.solution.air);
-        for (&w, cells) in model.parts.nonlinear_walls.iter().zip(&model.parts.nonlinear_cells) {
-            let numbers = &model.coefficients.walls[w];
+        for cells in &model.parts.solid_cells {
+            blend(active, &mut self.iterate.cells[cells.clone()], &self.solution.cells[cells.clone()]);
+        }
+        for &w in &model.parts.melting_walls {
+            let (numbers, cells) = (&model.coefficients.walls[w], model.cells(w));
             let moves = self.iterate.cells[cells.clone()].iter_mut().zip(&self.solution.cells[cells.clone()]);
             let laws = numbers.cells.iter().zip(&stage.histories[cells.clone()]);
             for ((old, &new), (cell, memory)) in moves.zip(laws) {

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from mascarin.building.base.part import cached_on
 from mascarin.building.parts.envelope.surface import Side
 from mascarin.building.parts.materials.material import PhaseChangeMaterial
 
@@ -102,8 +103,12 @@ _ZONES: Final[Mapping[str, Callable[[Description, str], bool]]] = {
 
 def _lit_zones(building: Description) -> set[str | None]:
     """Zones that the sun enters through windows."""
-    walls = [building.surfaces[window.surface] for window in building.windows.values()]
-    return {side.zone for wall in walls for side in wall.sides} - {None}
+
+    def found() -> set[str | None]:
+        walls = [building.surfaces[window.surface] for window in building.windows.values()]
+        return {side.zone for wall in walls for side in wall.sides} - {None}
+
+    return cached_on(building, "_lit_zones", found)
 
 
 def _radiates(building: Description, side: Side | WindowOutside) -> bool:

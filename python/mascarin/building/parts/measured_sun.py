@@ -74,8 +74,12 @@ def _window_shades(building: Description, name: str) -> list[str]:
 
 def paths(building: Description) -> set[str]:
     """Paths of the sides of `obstructed`."""
-    path_of = {side_name: path for path, side_name, _ in _sides(building)}
-    return {path_of[side_name] for side_name in obstructed(building)}
+    return cached_on(building, "_obstructed_paths", lambda: _paths(building))
+
+
+def _paths(building: Description) -> set[str]:
+    names = obstructed(building)
+    return {path for path, side_name, _ in _sides(building) if side_name in names}
 
 
 def measured_lines(building: Description) -> Iterator[str]:

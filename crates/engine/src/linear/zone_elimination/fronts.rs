@@ -15,6 +15,10 @@ use super::front::ZoneFront;
 use super::layout::Elimination;
 use super::shape::group_zones;
 
+/// Fronts that go through all parts of a computation before the next ones do: they stay in the fast memory of the processor, which those of
+/// a large building together do not.
+const BLOCK: usize = 4;
+
 /// The fronts of all zones.
 #[derive(Debug, Clone)]
 pub(crate) struct ZoneFronts<S> {
@@ -251,50 +255,53 @@ impl<S: Real> ZoneFronts<S> {
         constant: bool,
         coupled: &mut CoupledSystem<'_, S>,
     ) {
-        if let (true, Some(iterate)) = (self.windows_together, iterate) {
-            S::in_chunks(Condense { zone_fronts: &mut self.all, cells: &iterate.cells });
+        let condense = iterate.filter(|_| self.windows_together);
+        for zone_fronts in self.all.chunks_mut(BLOCK) {
+            if let Some(iterate) = condense {
+                S::in_chunks(Condense { zone_fronts, cells: &iterate.cells });
+            }
+            S::vectorised(
+                #[inline(always)]
+                || {
+                    S::in_chunks(Eliminate { zone_fronts, iterate, elimination, constant });
+                    if self.side_by_side {
+                        S::in_chunks(SchurComplements { zone_fronts });
+                    }
+                    for front in zone_fronts.iter() {
+                        front.add_schur_complement(elimination, constant, coupled);
+                    }
+                },
+            );
         }
-        S::vectorised(
-            #[inline(always)]
-            || {
-                S::in_chunks(Eliminate { zone_fronts: &mut self.all, iterate, elimination, constant });
-                if self.side_by_side {
-                    S::in_chunks(SchurComplements { zone_fronts: &mut self.all });
-                }
-                for zone_elimination in &self.all {
-                    zone_elimination.add_schur_complement(elimination, constant, coupled);
-                }
-            },
-        );
     }
 
     /// Solves for the eliminated surfaces, once the other unknowns are known; surfaces and cells are those of the building.
     #[inline(never)]
     pub(crate) fn solve(&mut self, constant: bool, unknowns: &mut [S], solution: &mut Unknowns<S>) {
-        let (zone_fronts, surfaces) = (&mut self.all, &mut solution.surfaces);
-        S::vectorised(
-            #[inline(always)]
-            || S::in_chunks(Solve { zone_fronts, constant, unknowns, surfaces }),
-        );
-        self.write_cells(&mut solution.cells);
+        let Unknowns { surfaces, cells, .. } = solution;
+        for zone_fronts in self.all.chunks_mut(BLOCK) {
+            S::vectorised(
+                #[inline(always)]
+                || S::in_chunks(Solve { zone_fronts, constant, unknowns, surfaces }),
+            );
+            if self.windows_together {
+                S::in_chunks(WriteWindows { zone_fronts, cells });
+            }
+        }
     }
 
     /// Surfaces and cells of the building from a solution of all unknowns that was found with the factors.
     #[inline(never)]
     pub(crate) fn write(&mut self, unknowns: &[S], solution: &mut Unknowns<S>) {
-        let (zone_fronts, surfaces) = (&mut self.all, &mut solution.surfaces);
-        S::vectorised(
-            #[inline(always)]
-            || S::in_chunks(Write { zone_fronts, unknowns, surfaces }),
-        );
-        self.write_cells(&mut solution.cells);
-    }
-
-    /// Cells of the windows that are computed together.
-    #[inline(always)]
-    fn write_cells(&self, cells: &mut [S]) {
-        if self.windows_together {
-            S::in_chunks(WriteWindows { zone_fronts: &self.all, cells });
+        let Unknowns { surfaces, cells, .. } = solution;
+        for zone_fronts in self.all.chunks_mut(BLOCK) {
+            S::vectorised(
+                #[inline(always)]
+                || S::in_chunks(Write { zone_fronts, unknowns, surfaces }),
+            );
+            if self.windows_together {
+                S::in_chunks(WriteWindows { zone_fronts, cells });
+            }
         }
     }
 

@@ -1,7 +1,6 @@
 //! A step with ideal loads: its stages, repeated until their temperatures and the loads are right.
 
 use crate::balance::energy_balance::Power;
-use crate::building::coefficients::Boundary;
 use crate::error::EngineError;
 use crate::linear::unknowns::line;
 use crate::number::real::{Mask, Real};
@@ -138,7 +137,7 @@ impl<S: Real> Stepper<'_, S> {
     /// Corrects the guess of a stage, once the weather in it is known.
     #[inline(always)]
     fn correct_guess(&mut self, state: &State<S>, stage: usize) {
-        let Self { model, solver, ideal_loads, .. } = self;
+        let Self { model, solver, ideal_loads, weather, .. } = self;
         let iterate = &mut solver.iterate;
         if stage > 0 {
             // Extrapolation from the first stage would contain the error of its load.
@@ -149,11 +148,9 @@ impl<S: Real> Stepper<'_, S> {
         // A change of the outdoor air against its extrapolation is added to the surfaces outdoors.
         let [before, now] = ideal_loads.outdoor;
         let expected = line(before, now, 1.0 + self.scheme.tableau().diagonal);
-        let turn = self.weather.conditions.outdoor_air - expected;
-        for (guess, surface) in iterate.surfaces.iter_mut().zip(&model.coefficients.surfaces) {
-            if matches!(surface.boundary, Boundary::Outdoors(_)) {
-                *guess += turn;
-            }
+        let turn = weather.conditions.outdoor_air - expected;
+        for outdoors in &weather.index.outdoors {
+            iterate.surfaces[outdoors.surface] += turn;
         }
     }
 
