@@ -87,7 +87,7 @@ class SoilGeometry:
 
     @property
     def area(self) -> float:
-        """Of what touches the soil: floor, walls of a basement, or both; of a strip for each metre. [m2, m2/m]"""
+        """Of what touches the soil: floor, walls, or both; of a strip for each metre. [m2, m2/m]"""
         if self.strip:
             floor, walls = self.width, 2.0 * self.basement
         else:

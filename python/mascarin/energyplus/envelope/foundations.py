@@ -9,6 +9,7 @@ EnergyPlus 25.2, Input Output Reference, Foundation:Kiva and Foundation:Kiva:Set
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Final
@@ -23,9 +24,8 @@ from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 
-#: The wall on the ground in a block: the thinnest that a block allows. Concrete conducts better than soil, and
-#: the wall of Kiva stands in the open air: with 0.3 m of soil in its place, a slab loses a fifth less than in
-#: EnergyPlus 25.2 at 0 degC outdoors. [m]
+#: The wall on the ground in a block: the thinnest that a block allows. Concrete conducts better than
+#: soil: with 0.3 m of soil instead, a slab at 0 degC outdoors loses a fifth less than in EnergyPlus 25.2. [m]
 _WALL: Final = 0.05
 #: Height of the wall above the ground where the file names none. [m]
 _ABOVE: Final = 0.2
@@ -36,14 +36,17 @@ _FIN, _FOOTING = 1.18, 0.154
 _WATER, _NO_WATER = 0.1022, 40.0
 #: Of soil below the slab, at least, and of a block. [m]
 _BELOW, _LEAST_DEPTH = 1.0, 1.0
-#: Kiva takes the wind at the height of the ground's roughness. A constant coefficient with which the loads of a
-#: small room in Chicago are those of EnergyPlus 25.2. [W/(m2 K)]
-_FILM: Final = 18.0
+#: Kiva takes the wind at the height of the ground's roughness. Constant coefficients with which the loads of
+#: a small room in Chicago are those of EnergyPlus 25.2, for the roughness of a file without settings and of
+#: blank settings; between them by the logarithm. [m], [W/(m2 K)]
+_FILMS: Final = ((0.9, 18.0), (0.03, 13.0))
 #: Conductivity, density and specific heat of the soil [W/(m K)], [kg/m3], [J/(kg K)]: where the file has no
-#: settings (EnergyPlus 25.2 has the same results with settings of these values), and of blank fields of settings.
+#: settings (EnergyPlus 25.2 has the same results with these values), and of blank fields of settings.
 _SOIL, _BLANK_SOIL = (0.864, 1510.0, 1260.0), (1.73, 1842.0, 419.0)
 #: Depth of a floor from which on it is that of a basement. [m]
 _BASEMENT: Final = 0.1
+#: Part of the edges of a floor from which on its walls make it that of a basement. [-]
+_MOST: Final = 0.5
 #: Sizes of a floor, and the extent of the soil, that a block allows. [m]
 _SIZES: Final = (1.0, 500.0)
 _FARTHEST: Final = 200.0
@@ -73,7 +76,9 @@ def foundation(context: Context, surface: IdfSurface, surfaces: Iterable[IdfSurf
     """
     same = [one for one in surfaces if one.boundary == "foundation" and one.zone is surface.zone]
     floors = [one for one in same if one.shape == "floor"]
-    walls = [one for one in same if one.shape == "wall" and one.beyond.casefold() == surface.beyond.casefold()]
+    walls = [
+        one for one in same if one.shape == "wall" and one.beyond.casefold() == surface.beyond.casefold()
+    ]
     if surface.shape not in ("floor", "wall") or not floors:
         return None
     floor = surface if surface.shape == "floor" else max(floors, key=lambda one: g.area_of(one.points))
@@ -85,7 +90,8 @@ def foundation(context: Context, surface: IdfSurface, surfaces: Iterable[IdfSurf
     block = _soil(context, surface) | _structure(context, item, depth)
     if depth is None:
         block = _plan(floor, exposed) | block
-        _bridge(context, item, floor, exposed)
+        beside = sum(_length(wall) for wall in walls)
+        _bridge(context, item, floor, exposed - beside)
     else:
         strip = {"width": _strip(floor, exposed), "basement_depth": round(depth, 4)}
         contact = "floor" if surface.shape == "floor" else "walls"
@@ -101,13 +107,17 @@ def foundation(context: Context, surface: IdfSurface, surfaces: Iterable[IdfSurf
 
 def _effect(depth: float | None) -> tuple[str, str]:
     """What is different here, and its effect: of a slab, or of a basement of some depth."""
-    film = f"a constant coefficient outdoors of {_FILM:g} W/(m2 K)"
     if depth is None:
-        return "a foundation of Kiva", f"a block of soil with {film}: EFFECT_SLAB"
+        return (
+            "a foundation of Kiva",
+            "a block of soil with a constant coefficient outdoors: 0.2 to 0.8 K in a small room in five "
+            "climates, up to 5 % of its loads",
+        )
     return (
         "a basement of Kiva",
-        f"a block of soil for each surface, with {film}; heat between floor and walls through the soil is "
-        "left out: EFFECT_BASEMENT",
+        "a block of soil for each surface with a constant coefficient outdoors, without heat from the floor "
+        "to the walls through the soil: 0.2 to 1.1 K in a small room in five climates, up to 9 % of its "
+        "loads where they are more than 400 kWh; with walls of bare concrete 8 % of heating, 21 % of cooling",
     )
 
 
@@ -135,6 +145,38 @@ def above_grade(context: Context, surface: IdfSurface) -> tuple[IdfSurface, IdfS
     return below, replace(surface, points=parts[1], boundary="outdoors", sun=True, wind=True)
 
 
+def insulated(context: Context, surface: IdfSurface, name: str) -> str:
+    """The construction of a wall above the ground with the insulation outside of it, if there is any.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    surface : IdfSurface
+        The wall.
+    name : str
+        Its construction in the description.
+    """
+    layer = _outside_insulation(context, context.model.named(surface.beyond, "Foundation:Kiva"))
+    if layer is None:
+        return name
+    held = context.section("constructions")
+    material = context.names.of("materials", f"{layer.name} outside of walls")
+    context.section("materials")[material] = {
+        "kind": "resistance",
+        "resistance": round(_resistance(layer), 6),
+    }
+    outside = context.names.of("constructions", f"{name} and {layer.name}")
+    held[outside] = {"layers": [{"material": material}, *held[name]["layers"]]}
+    return outside
+
+
+def _outside_insulation(context: Context, item: IdfObject | None) -> IdfObject | None:
+    """Material of the insulation down along the wall."""
+    key = "exterior_vertical_insulation_material_name"
+    return None if item is None else context.model.named(item.text(key), "Material", "Material:NoMass")
+
+
 def _above(item: IdfObject | None) -> float:
     """Height of the wall above the ground. [m]"""
     height = None if item is None else item.number("wall_height_above_grade")
@@ -147,11 +189,11 @@ def _depth(
     """Depth of a floor below the ground, or that to which a wall stands; None of a slab. [m]"""
     sizes = []
     for wall in walls if surface.shape == "floor" else [surface]:
-        plan = wall.points[:, :2]
-        length = float(np.linalg.norm(plan[:, None] - plan[None, :], axis=-1).max())
+        length = _length(wall)
         sizes.append((length, max(g.area_of(wall.points) / length - _above(item), 0.0)))
     total = sum(length for length, _ in sizes)
-    if not sizes or total <= 0.0:
+    # Where most edges have no wall, EnergyPlus has most of the floor beside the open ground.
+    if not sizes or total <= 0.0 or (surface.shape == "floor" and total < _MOST * exposed):
         return None
     depths = [depth for _, depth in sizes]
     if surface.shape == "floor" and (max(depths) - min(depths) > _BASEMENT or total < 0.99 * exposed):
@@ -161,6 +203,12 @@ def _depth(
     mean = sum(length * depth for length, depth in sizes)
     mean /= max(total, exposed) if surface.shape == "floor" else total
     return mean if mean >= _BASEMENT or surface.shape == "wall" else None
+
+
+def _length(wall: IdfSurface) -> float:
+    """Length of a wall, seen from above. [m]"""
+    plan = wall.points[:, :2]
+    return float(np.linalg.norm(plan[:, None] - plan[None, :], axis=-1).max())
 
 
 def _bridge(context: Context, item: IdfObject | None, floor: IdfSurface, exposed: float) -> None:
@@ -173,9 +221,7 @@ def _bridge(context: Context, item: IdfObject | None, floor: IdfSurface, exposed
         footing = context.model.named(item.text("footing_wall_construction_name"), "Construction")
         if footing is not None:
             resistance = _FIN + sum(_resistance(layer) for layer in layers_of(context, footing))
-        layer = context.model.named(
-            item.text("exterior_vertical_insulation_material_name"), "Material", "Material:NoMass"
-        )
+        layer = _outside_insulation(context, item)
         resistance += 0.0 if layer is None else _resistance(layer)
     zone = context.section("zones")[context.names.of("zones", floor.zone.name)]
     name = context.names.of("bridges of the zone", f"edge of {floor.item.name}")
@@ -187,8 +233,7 @@ def _least(context: Context, item: IdfObject | None, floor: IdfSurface, block: S
     """Least depth of a block, by the rule of EnergyPlus: 1 m below the wall and its insulation. [m]"""
     below = None if item is None else item.number("wall_depth_below_slab")
     slab = sum(
-        layer.number("thickness") or 0.0
-        for layer in layers_of(context, construction_of(context, floor.item))
+        layer.number("thickness") or 0.0 for layer in layers_of(context, construction_of(context, floor.item))
     )
     basement = block.get("basement_depth", -_above(item))
     edge = block.get("edge", {})
@@ -245,6 +290,9 @@ def _soil(context: Context, surface: IdfSurface) -> Section:
         return usual if value is None else value
 
     conductivity, density, specific_heat = _SOIL if item is None else _BLANK_SOIL
+    (rough, high), (smooth, low) = _FILMS
+    roughness = rough if item is None else max(number("ground_surface_roughness", smooth), 1e-3)
+    film = low + (high - low) * math.log(roughness / smooth) / math.log(rough / smooth)
     capacity = number("soil_density", density) * number("soil_specific_heat", specific_heat)
     boundary = "" if item is None else item.word("deep_ground_boundary_condition")
     depth = None if item is None else item.number("deep_ground_depth")
@@ -257,7 +305,7 @@ def _soil(context: Context, surface: IdfSurface) -> Section:
         "heat_capacity": round(capacity, 3),
         "absorptance": number("ground_solar_absorptivity", 0.9),
         "emissivity": number("ground_thermal_absorptivity", 0.9),
-        "outdoor_film": _FILM,
+        "outdoor_film": round(film, 3),
         "far": min(number("far_field_width", 40.0), _FARTHEST),
         "depth": min(_NO_WATER if depth is None else depth, _FARTHEST),
     }
@@ -297,8 +345,9 @@ def _structure(context: Context, item: IdfObject | None, basement: float | None)
         context.findings.approximated(
             item,
             f"{position} insulation of the edge",
-            "saves less here: a small room is 1.2 to 1.4 K colder, with 22 to 53 % more heating and up to "
-            "28 % less cooling in five climates",
+            "0.4 to 0.7 K in a small room in five climates, up to 5 % of its loads"
+            if position == "vertical"
+            else "saves more here: 0.7 K in a small room in two climates, 15 to 20 % less heating",
         )
         structure["edge"] = {
             "position": position,

@@ -10,7 +10,7 @@ from typing import Any, Final
 from mascarin.building.geometry import Polygon
 from mascarin.energyplus.envelope.constructions import construction
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
-from mascarin.energyplus.envelope.foundations import above_grade, foundation
+from mascarin.energyplus.envelope.foundations import above_grade, foundation, insulated
 from mascarin.energyplus.envelope.glazings import construction_of
 from mascarin.energyplus.envelope.idf_surfaces import IdfSurface
 from mascarin.energyplus.envelope.materials import layers_of, skin
@@ -98,8 +98,9 @@ def describe_surfaces(
         done.placed[surface.item.name.casefold()], done.has_vertices[name] = name, has_vertices
         if parts is not None:
             top = context.names.of("surfaces", f"{surface.item.name} above the ground")
+            plain = construction(context, item, cut=False, finite_differences=_is_finite(solver))
             context.section("surfaces")[top] = {
-                "construction": construction(context, item, cut=False, finite_differences=_is_finite(solver)),
+                "construction": insulated(context, surface, plain),
                 "vertices": g.rounded(parts[1].points),
                 "outside": _outdoors(context, parts[1], coefficients),
                 "inside": inside,
