@@ -75,13 +75,13 @@ def _same_area(building: Description, name: str, surface: str) -> Iterator[InitE
     expected, area = building.soil_blocks[name].area, building.surfaces[surface].area
     if expected is None or area is None or abs(float(area) / expected - 1.0) <= _SAME:
         return
-    contact = building.soil_blocks[name].contact
-    if contact == "both" and building.soil_blocks[name].basement_depth > 0.0:
-        contact = "floor and walls below the ground"
+    block = building.soil_blocks[name]
+    both = "floor and walls below the ground" if block.basement_depth > 0.0 else "floor"
+    part = both if block.contact == "both" else block.contact
     yield fault(
         ("surfaces", surface, "area"),
         f"{float(area):g} m2",
-        f"{expected:g} m2 within 1 %: {'floor' if contact == 'both' else contact} of block '{name}'",
+        f"{expected:g} m2 within 1 %: {part} of block '{name}'",
         "Correct the area, or length and width of the block; for a floor that is no rectangle leave "
         "'length:' out and write the area over half of the perimeter as 'width:'.",
     )

@@ -74,14 +74,14 @@ def foundation(context: Context, surface: IdfSurface, surfaces: Iterable[IdfSurf
     dict or None
         None for a foundation without a floor in the zone, or without a length of edges outdoors.
     """
-    same = [one for one in surfaces if one.boundary == "foundation" and one.zone is surface.zone]
-    floors = [one for one in same if one.shape == "floor"]
+    same = [other for other in surfaces if other.boundary == "foundation" and other.zone is surface.zone]
+    floors = [other for other in same if other.shape == "floor"]
     walls = [
-        one for one in same if one.shape == "wall" and one.beyond.casefold() == surface.beyond.casefold()
+        one for one in same if other.shape == "wall" and other.beyond.casefold() == surface.beyond.casefold()
     ]
     if surface.shape not in ("floor", "wall") or not floors:
         return None
-    floor = surface if surface.shape == "floor" else max(floors, key=lambda one: g.area_of(one.points))
+    floor = surface if surface.shape == "floor" else max(floors, key=lambda other: g.area_of(other.points))
     exposed = _exposed_perimeter(context, floor)
     if exposed is None:
         return None
