@@ -77,7 +77,9 @@ def foundation(context: Context, surface: IdfSurface, surfaces: Iterable[IdfSurf
     same = [other for other in surfaces if other.boundary == "foundation" and other.zone is surface.zone]
     floors = [other for other in same if other.shape == "floor"]
     walls = [
-        one for one in same if other.shape == "wall" and other.beyond.casefold() == surface.beyond.casefold()
+        other
+        for other in same
+        if other.shape == "wall" and other.beyond.casefold() == surface.beyond.casefold()
     ]
     if surface.shape not in ("floor", "wall") or not floors:
         return None
@@ -87,13 +89,13 @@ def foundation(context: Context, surface: IdfSurface, surfaces: Iterable[IdfSurf
         return None
     item = context.model.named(surface.beyond, "Foundation:Kiva")
     depth = _depth(context, item, surface, walls, exposed)
-    block = _soil(context, surface) | _structure(context, item, depth)
+    block: Section = _soil(context, surface) | _structure(context, item, depth)
     if depth is None:
         block = _plan(floor, exposed) | block
         beside = sum(_length(wall) for wall in walls)
         _bridge(context, item, floor, exposed - beside)
     else:
-        strip = {"width": _strip(floor, exposed), "basement_depth": round(depth, 4)}
+        strip: Section = {"width": _strip(floor, exposed), "basement_depth": round(depth, 4)}
         contact = "floor" if surface.shape == "floor" else "walls"
         block = strip | {"contact": contact} | block
     if surface.shape == "wall" and block.get("edge", {}).get("position") == "horizontal":
@@ -235,9 +237,9 @@ def _least(context: Context, item: IdfObject | None, floor: IdfSurface, block: S
     slab = sum(
         layer.number("thickness") or 0.0 for layer in layers_of(context, construction_of(context, floor.item))
     )
-    basement = block.get("basement_depth", -_above(item))
+    basement = float(block.get("basement_depth", -_above(item)))
     edge = block.get("edge", {})
-    extent = edge["extent"] if edge.get("position") == "vertical" else 0.0
+    extent = float(edge["extent"]) if edge.get("position") == "vertical" else 0.0
     lowest = max(basement + slab + (below or 0.0), extent)
     return max(lowest + _BELOW, 1.3 * basement, _LEAST_DEPTH)
 

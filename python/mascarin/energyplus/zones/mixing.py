@@ -32,7 +32,8 @@ def zones_of(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[
 def design_flow(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> float:
     """Flow of an object in a zone by its method of calculation; 0 where its field is blank. [m3/s]"""
     word = item.word("design_flow_rate_calculation_method")
-    keys, size = ("design_flow_rate",), 1.0
+    size = 1.0
+    keys: tuple[str, ...] = ("design_flow_rate",)
     if word in ("flow/area", "flow/floorarea"):
         keys = ("flow_rate_per_floor_area", "flow_rate_per_zone_floor_area", "flow_per_zone_floor_area")
         size = zone.floor
