@@ -298,23 +298,6 @@ def _roof_plants(model: Model) -> None:
     model["BuildingSurface:Detailed"]["room R"]["construction_name"] = "green"
 
 
-def _basement(model: Model, **boundary: str) -> None:
-    """Put a wall and the floor below the ground."""
-    surfaces = model["BuildingSurface:Detailed"]
-    surfaces["room N"] |= {"sun_exposure": "NoSun", "wind_exposure": "NoWind"}
-    for name in ("room N", "room F"):
-        surfaces[name] |= boundary
-
-
-def _foundation(model: Model) -> None:
-    put(model, "Foundation:Kiva", base={})
-    _basement(model, outside_boundary_condition="Foundation", outside_boundary_condition_object="base")
-    put(model, "SurfaceProperty:ExposedFoundationPerimeter", edge={
-        "surface_name": "room F", "exposed_perimeter_calculation_method": "ExposedPerimeterFraction",
-        "exposed_perimeter_fraction": 1.0,
-    })  # fmt: skip
-
-
 def _moisture(model: Model) -> None:
     # Gypsum board with the depths of EnergyPlus itself.
     put(model, "MaterialProperty:MoisturePenetrationDepth:Settings", board={
@@ -450,10 +433,6 @@ CASES = {
         "WindowShadingControl", "*, on*", _shaded("OnIfHighZoneAirTemperature", setpoint=24.0)
     ),
     "green_roof": Case("Material:RoofVegetation", "*", _roof_plants),
-    "kiva": Case(
-        "BuildingSurface:Detailed", "ground by foundation*", _foundation,
-        without=lambda model: _basement(model, outside_boundary_condition="Ground"),
-    ),
     "moisture": Case("MaterialProperty:MoisturePenetrationDepth", "*", _moisture),
     "moisture_method": Case("HeatBalanceAlgorithm", "moisture in walls*", _moisture),
     "operative": Case(

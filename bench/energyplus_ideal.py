@@ -55,7 +55,8 @@ _FLOW = {
     "flow_per_exterior_surface_area": "flow_rate_per_exterior_surface_area",
 }
 _SPACE = {"zone_name": "zone_or_space_name", "source_zone_name": "source_zone_or_space_name"}
-_MIXING = _SPACE | {
+_MIXING = _SPACE | {"flow_rate_per_zone_floor_area": "flow_rate_per_floor_area"}
+_MIXING |= {
     f"{most}_{old}temperature_schedule_name": f"{most}_{new}_temperature_schedule_name"
     for most in ("minimum", "maximum")
     for old, new in (("zone_", "receiving"), ("source_zone_", "source"))

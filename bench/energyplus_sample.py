@@ -241,8 +241,10 @@ def worst(row: dict[str, Any]) -> tuple[str, float]:
 
 def close(row: dict[str, Any]) -> bool:
     """Whether all zones and both loads are close to EnergyPlus."""
+    if "error" in row:
+        return False
     percents = [abs(percent) for _, _, percent in loads(row).values()]
-    return "error" not in row and worst(row)[1] <= CLOSE[0] and max(percents) <= CLOSE[1]
+    return worst(row)[1] <= CLOSE[0] and max(percents) <= CLOSE[1]
 
 
 def table(rows: list[dict[str, Any]]) -> str:

@@ -122,6 +122,21 @@ def test_insulation_and_basement() -> None:
     assert ladder_of(geometry(basement=deep)).loss == pytest.approx(mean, rel=0.03)
 
 
+def test_floor_and_walls_of_a_basement_alone() -> None:
+    """A floor with soil below it alone, in one dimension; walls by their perimeter; both lose less than the
+    sum of each alone.
+    """
+    floor = column(12.0, basement=3.0, contact="floor")
+    assert ladder_of(floor).loss == pytest.approx(1.0 / (1.0 / 5.0 + 9.0 / K), rel=1e-6)
+    strip = geometry(width=30.0, basement=2.0, contact="walls")
+    square = geometry(width=30.0, length=30.0, basement=2.0, contact="walls")
+    assert (strip.area, square.area) == (4.0, 240.0)
+    assert ladder_of(square).loss == pytest.approx(ladder_of(strip).loss, rel=0.03)
+    blocks = {name: geometry(basement=2.0, contact=name) for name in ("both", "floor", "walls")}
+    heat = {name: ladder_of(block).loss * block.area for name, block in blocks.items()}
+    assert max(heat["floor"], heat["walls"]) < heat["both"] < heat["floor"] + heat["walls"]
+
+
 # --- buildings ----------------------------------------------------------------------------------------------
 
 
@@ -316,6 +331,10 @@ def test_the_linear_model_marches_as_a_run() -> None:
         ),
         (lambda t: t["soil_blocks"].update(more=dict(t["soil_blocks"]["below"])), "no surface is on"),
         (lambda t: t["soil_blocks"]["below"].update(basement_depth=14.0), "a floor that is on the block"),
+        (
+            lambda t: t["soil_blocks"]["below"].update(contact="walls"),
+            "a basement, whose walls touch the soil",
+        ),
         (
             lambda t: t.update(weather={"columns": {"air_temperature": {"offset": 1.0}}}),
             "a corrected air temperature beside a block of soil",

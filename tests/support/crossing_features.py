@@ -313,9 +313,10 @@ def _boundaries_and_densities(tree: Json) -> None:
 
 
 def _soil(tree: Json) -> None:
-    """A floor on a strip of soil."""
+    """The floor of a basement on a strip of soil."""
     tree["soil_blocks"] = {
         "below": {"width": 3, "wall_thickness": 0.2, "conductivity": 1.5, "heat_capacity": 2.5e6,
+                  "basement_depth": 1, "contact": "floor",
                   "before": {"mean": 22, "amplitude": 4, "coldest_day": 40}},
     }  # fmt: skip
     tree["surfaces"]["floor"] = {"construction": "wall", "area": 12, "tilt": 180,

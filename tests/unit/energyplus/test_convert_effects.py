@@ -70,13 +70,13 @@ def test_the_list_states_the_measured_effect(name: str, tmp_path: Path) -> None:
 
 def test_the_largest_effect_comes_first(tmp_path: Path) -> None:
     model = model_of("tree")
-    for name in ("kiva", "moisture"):
+    for name in ("shading_temperature", "moisture"):
         bench.CASES[name].added(model)
     file = tmp_path / "model.epJSON"
     file.write_text(json.dumps(model), encoding="utf-8")
     lines = [line for line in terminal_lines(convert(file)) if "in a small room" in line]
     kinds = [line.split("'")[0].split(":", 1)[1].strip() for line in lines]
-    assert "BuildingSurface:Detailed" in lines[0], "2.3 K by the ground of two surfaces"
+    assert "WindowShadingControl" in lines[0], "1.8 K by shades"
     assert kinds.index(next(kind for kind in kinds if kind.startswith("Shading"))) < len(kinds) - 1
 
 

@@ -75,11 +75,13 @@ def _same_area(building: Description, name: str, surface: str) -> Iterator[InitE
     expected, area = building.soil_blocks[name].area, building.surfaces[surface].area
     if expected is None or area is None or abs(float(area) / expected - 1.0) <= _SAME:
         return
-    walls = " and walls below the ground" if building.soil_blocks[name].basement_depth > 0.0 else ""
+    block = building.soil_blocks[name]
+    both = "floor and walls below the ground" if block.basement_depth > 0.0 else "floor"
+    part = both if block.contact == "both" else block.contact
     yield fault(
         ("surfaces", surface, "area"),
         f"{float(area):g} m2",
-        f"{expected:g} m2 within 1 %: floor{walls} of block '{name}'",
+        f"{expected:g} m2 within 1 %: {part} of block '{name}'",
         "Correct the area, or length and width of the block; for a floor that is no rectangle leave "
         "'length:' out and write the area over half of the perimeter as 'width:'.",
     )
@@ -89,6 +91,13 @@ def _inside_the_block(building: Description, name: str) -> Iterator[InitErrorDet
     block = building.soil_blocks[name]
     lowest = float(block.basement_depth)
     what = "the floor"
+    if block.contact == "walls" and lowest == 0.0:
+        yield fault(
+            ("soil_blocks", name, "contact"),
+            "walls of a slab on the ground",
+            "a basement, whose walls touch the soil",
+            "Write its 'basement_depth', or 'contact: floor'.",
+        )
     if block.edge is not None and block.edge.position == "vertical" and float(block.edge.extent) > lowest:
         lowest, what = float(block.edge.extent), "the edge insulation"
     if lowest > 0.8 * float(block.depth):

@@ -75,6 +75,11 @@ class SoilBlock(Part):
     width: q.SoilWidth
     wall_thickness: q.WallThickness
     basement_depth: q.BasementDepth = Number(0.0, source=Remark("not given: a slab on the ground"))
+    contact: Literal["floor", "walls", "both"] = Field(
+        "both",
+        description="What of a basement touches the soil: its floor, its walls below the ground, or both; "
+        "nothing passes the rest",
+    )
     conductivity: q.SoilConductivity
     heat_capacity: q.SoilHeatCapacity
     inside_film: q.SoilFilm = Number(1.0 / 0.17, source=Remark(_FILMS), assumed=True)
@@ -104,11 +109,12 @@ class SoilBlock(Part):
 
     @property
     def area(self) -> float | None:
-        """Floor, and walls below the ground; None for a strip. [m2]"""
+        """Of what touches the soil: floor, walls below the ground, or both; None for a strip. [m2]"""
         if self.length is None:
             return None
         length, width = float(self.length), float(self.width)
-        return length * width + 2.0 * (length + width) * float(self.basement_depth)
+        floor, walls = length * width, 2.0 * (length + width) * float(self.basement_depth)
+        return {"floor": floor, "walls": walls, "both": floor + walls}[self.contact]
 
     @property
     def radiation(self) -> tuple[float, float, float] | None:
@@ -142,4 +148,5 @@ class SoilBlock(Part):
             "deep": self.deep_temperature is not None,
             "horizontal": edge if horizontal else (0.0, 0.0),
             "vertical": (0.0, 0.0) if horizontal else edge,
+            "contact": self.contact,
         }

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
@@ -56,6 +56,8 @@ class SoilGeometry:
     horizontal, vertical : (float, float)
         Insulation below the floor along its edge, its reach; down along the outer side of the walls, its
         depth; and their resistances. [m], [m2 K/W]
+    contact : {"both", "floor", "walls"}
+        What of a basement touches the soil; nothing passes the rest.
     """
 
     length: float
@@ -71,6 +73,7 @@ class SoilGeometry:
     deep: bool
     horizontal: tuple[float, float] = (0.0, 0.0)
     vertical: tuple[float, float] = (0.0, 0.0)
+    contact: Literal["floor", "walls", "both"] = "both"
 
     @property
     def strip(self) -> bool:
@@ -84,10 +87,12 @@ class SoilGeometry:
 
     @property
     def area(self) -> float:
-        """Floor, and walls of a basement; of a strip for each metre. [m2, m2/m]"""
+        """Of what touches the soil: floor, walls, or both; of a strip for each metre. [m2, m2/m]"""
         if self.strip:
-            return self.width + 2.0 * self.basement
-        return self.length * self.width + 2.0 * (self.length + self.width) * self.basement
+            floor, walls = self.width, 2.0 * self.basement
+        else:
+            floor, walls = self.length * self.width, 2.0 * (self.length + self.width) * self.basement
+        return {"floor": floor, "walls": walls, "both": floor + walls}[self.contact]
 
 
 @dataclass(frozen=True)
@@ -196,8 +201,9 @@ class FiniteVolumes:
         covered = inner & ~self._beyond_edge_insulation()
         resistance = 1.0 / block.inside + np.where(covered, block.horizontal[1], 0.0)
         floor = self._faces(2)[:, :, below] / (resistance + half[2][below])
-        zone[:, :, below] += np.where(inner, floor, 0.0)
-        for direction in (0, 1) if block.basement > 0.0 and not block.strip else (0,):
+        zone[:, :, below] += np.where(inner & (block.contact != "walls"), floor, 0.0)
+        directions = (0, 1) if block.basement > 0.0 and not block.strip else (0,)
+        for direction in directions if block.contact != "floor" else ():
             # The first cells beyond the inner side of the walls of a basement.
             beside = ~_before(self._soil, direction) & _after(self._soil, direction)
             shape = [1, 1, 1]

@@ -16,11 +16,15 @@ from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 
+#: Resistance that is insulation [m2 K/W], and the time in which what it hides follows the room [s].
+_INSULATION, _SLOW = 0.5, 86400.0
 #: Layers below this are left out where a construction is cut [m].
 _MIN_THICKNESS = 1e-5
 
 
-def construction(context: Context, item: IdfObject, *, cut: bool, finite_differences: bool) -> str:
+def construction(
+    context: Context, item: IdfObject, *, cut: bool, finite_differences: bool, on_soil: bool = False
+) -> str:
     """Enter a construction, if it is not there, and return its name.
 
     Parameters
@@ -33,15 +37,23 @@ def construction(context: Context, item: IdfObject, *, cut: bool, finite_differe
         Whether only the part inside of the plane without heat flow is wanted.
     finite_differences : bool
         Whether EnergyPlus solves the surface by finite differences.
+    on_soil : bool
+        Whether it lies on a block of soil.
     """
     melting = finite_differences and _can_melt(context, item)
     original = item.name + (" melting" if melting else "") + (" inner part" if cut else "")
+    if on_soil:
+        plain = plain_layers(context, item, finite_differences)
+        on_soil = light_outside(context, plain) != plain
+    original += " on soil" if on_soil else ""
     name = context.names.of("constructions", original)
     held = context.section("constructions")
     if name not in held:
         layers = plain_layers(context, item, finite_differences)
         if cut:
             layers = inner_part(layers, context.section("materials"))
+        if on_soil:
+            layers = light_outside(context, layers)
         held[name] = {"layers": _named_apart(layers)}
     return name
 
@@ -94,6 +106,32 @@ def inner_part(layers: list[Section], materials: Section) -> list[Section]:
         if thickness > _MIN_THICKNESS:
             inner_layers.append(layer | {"thickness": round(thickness, 7)})
     return inner_layers or layers[-1:]
+
+
+def light_outside(context: Context, layers: list[Section]) -> list[Section]:
+    """Layers on soil, of which those outside of insulation store nothing: the soil in their place does.
+
+    Concrete between insulation and soil has the temperature of the soil, of which a block has as much as if
+    the construction displaced none.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion, which has their materials.
+    layers : list of dict
+        Layers from outside to inside.
+    """
+    materials = context.section("materials")
+    held = [_held(layer, materials[layer["material"]]) for layer in layers]
+    light = []
+    for k, (layer, (resistance, heat)) in enumerate(zip(layers, held, strict=True)):
+        insulation = sum(inner for inner, _ in held[k + 1 :])
+        if insulation >= _INSULATION and heat * insulation > _SLOW:
+            name = context.names.of("materials", f"{layer['material']} {layer['thickness']:g} m on soil")
+            materials[name] = {"kind": "resistance", "resistance": round(resistance, 6)}
+            layer = {"material": name}
+        light.append(layer)
+    return light
 
 
 def _held(layer: Section, material: dict[str, Any]) -> tuple[float, float]:

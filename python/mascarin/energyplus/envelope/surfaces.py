@@ -10,7 +10,7 @@ from typing import Any, Final
 from mascarin.building.geometry import Polygon
 from mascarin.energyplus.envelope.constructions import construction
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
-from mascarin.energyplus.envelope.foundations import foundation
+from mascarin.energyplus.envelope.foundations import above_grade, foundation, insulated
 from mascarin.energyplus.envelope.glazings import construction_of
 from mascarin.energyplus.envelope.idf_surfaces import IdfSurface
 from mascarin.energyplus.envelope.materials import layers_of, skin
@@ -77,6 +77,8 @@ def describe_surfaces(
         if surface.item.name.casefold() in done.reversed_names:
             continue
         outside, cut = _outside(context, surface, by_name, coefficients, done)
+        parts = above_grade(context, surface) if "soil" in outside else None
+        below = surface if parts is None else parts[0]
         item = construction_of(context, surface.item)
         name = context.names.of("surfaces", surface.item.name)
         inside = _toward_zone(context, surface, coefficients, item, outer=False)
@@ -84,14 +86,26 @@ def describe_surfaces(
             layers = _air_boundary(context, surface, item)
         else:
             solver = solvers.get(surface.item.name.casefold(), solvers.get(item.name.casefold(), solvers[""]))
-            layers = construction(context, item, cut=cut, finite_differences=_is_finite(solver))
+            layers = construction(
+                context, item, cut=cut, finite_differences=_is_finite(solver), on_soil="soil" in outside
+            )
             context.moist[name] = _is_moist(solver)
-        shape, has_vertices = _shape(context, surface)
+        shape, has_vertices = _shape(context, below)
         section = {"construction": layers, **shape, "outside": outside, "inside": inside}
         if outside.get("zone") == inside["zone"]:
             section["internal_mass"] = True
         context.section("surfaces")[name] = section
         done.placed[surface.item.name.casefold()], done.has_vertices[name] = name, has_vertices
+        if parts is not None:
+            top = context.names.of("surfaces", f"{surface.item.name} above the ground")
+            plain = construction(context, item, cut=False, finite_differences=_is_finite(solver))
+            context.section("surfaces")[top] = {
+                "construction": insulated(context, surface, plain),
+                "vertices": g.rounded(parts[1].points),
+                "outside": _outdoors(context, parts[1], coefficients),
+                "inside": inside,
+            }
+            done.has_vertices[top] = True
     _masses(context, coefficients, _is_finite(solvers[""]))
     return done
 

@@ -30,19 +30,26 @@ def zones_of(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[
 
 
 def design_flow(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> float:
-    """Flow of an object in a zone by its method of calculation. [m3/s]"""
+    """Flow of an object in a zone by its method of calculation; 0 where its field is blank. [m3/s]"""
     word = item.word("design_flow_rate_calculation_method")
+    size = 1.0
+    keys: tuple[str, ...] = ("design_flow_rate",)
     if word in ("flow/area", "flow/floorarea"):
-        areas = ("flow_rate_per_floor_area", "flow_rate_per_zone_floor_area", "flow_per_zone_floor_area")
-        return item.needed(*areas) * zone.floor
-    if word in ("flow/exteriorarea", "flow/exteriorwallarea"):
-        area = zone.walls if word == "flow/exteriorwallarea" else zone.outdoors
-        return item.needed("flow_rate_per_exterior_surface_area", "flow_per_exterior_surface_area") * area
-    if word == "flow/person":
-        return item.needed("flow_rate_per_person") * people_in(context, zone, zones)
-    if word == "airchanges/hour":
-        return item.needed("air_changes_per_hour") * zone.volume / 3600.0
-    return item.needed("design_flow_rate")
+        keys = ("flow_rate_per_floor_area", "flow_rate_per_zone_floor_area", "flow_per_zone_floor_area")
+        size = zone.floor
+    elif word in ("flow/exteriorarea", "flow/exteriorwallarea"):
+        keys = ("flow_rate_per_exterior_surface_area", "flow_per_exterior_surface_area")
+        size = zone.walls if word == "flow/exteriorwallarea" else zone.outdoors
+    elif word == "flow/person":
+        keys, size = ("flow_rate_per_person",), people_in(context, zone, zones)
+    elif word == "airchanges/hour":
+        keys, size = ("air_changes_per_hour",), zone.volume / 3600.0
+    rate = item.number(*keys)
+    if rate is None:
+        context.findings.approximated(
+            item, f"no {keys[0].replace('_', ' ')}", "no flow, as EnergyPlus, which warns of it"
+        )
+    return (rate or 0.0) * size
 
 
 @dataclass(frozen=True)
