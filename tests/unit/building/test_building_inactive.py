@@ -150,10 +150,15 @@ def turnover(run: dict[str, Any]) -> dict[str, float]:
 
 def test_all_surfaces_are_looked_through_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """However many ask: in a row of 1000 rooms, each of 5000 surfaces looked through all."""
-    looked, sides = [], measured_sun._sides
-    monkeypatch.setattr(measured_sun, "_sides", lambda building: looked.append(1) or sides(building))
+    looked, sides = [0], measured_sun._sides
+
+    def counted(building: Building) -> Any:
+        looked[0] += 1
+        return sides(building)
+
+    monkeypatch.setattr(measured_sun, "_sides", counted)
     building = room()
     assert len(building.surfaces) > 1
     assert inactive(building)
-    assert len(looked) <= 2  # for measured irradiances, and for their paths
+    assert looked[0] <= 2  # for measured irradiances, and for their paths
     assert locations._lit_zones(building) is locations._lit_zones(building)
