@@ -425,6 +425,27 @@ def test_sun_and_sky_on_the_ground_act_as_warmer_air() -> None:
     assert loads[0].mean() == pytest.approx(loads[1].mean(), abs=1e-3 * abs(loads[2].mean()))
 
 
+def test_sun_on_the_ground_from_its_parts() -> None:
+    """A weather with the diffuse and the direct sun in place of the global one: the same loads."""
+    hours = np.arange(8760)
+    air = 8.0 - 10.0 * np.cos(2.0 * np.pi * hours / 8760.0)
+    sun = np.where((hours % 24 >= 11) & (hours % 24 < 14), 300.0, 0.0)
+    whole = sunny_climate(air, sun, np.full(8760, 300.0))
+    house = Building.from_dict(held(tree(before=None, absorptance=0.7)))
+    parts = whole.data.rename(columns={"air_temperature": "T"})[
+        ["T", "diffuse_horizontal", "direct_normal", "infrared"]
+    ]
+    columns = {"air_temperature": "T"} | {name: name for name in parts.columns[1:]}
+    absent = ["dew_point", "wind_speed", "wind_direction"]
+    alone = mc.Climate.from_table(parts, columns=columns, absent=absent)
+    assert "global_horizontal" not in alone.record.columns
+    loads = [
+        mc.simulate(house, weather, step="1h", outputs=["room.net_load"]).to_dataframe()["room.net_load"]
+        for weather in (whole, alone)
+    ]
+    assert (loads[0] - loads[1]).abs().max() < 1e-9 * loads[0].abs().max()
+
+
 def test_what_sun_on_the_ground_needs() -> None:
     description = tree(absorptance=0.8)
     description["weather"] = {"columns": {"infrared": {"offset": 5.0}}}

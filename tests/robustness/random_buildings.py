@@ -84,6 +84,7 @@ class _Maker:
         if not tree["windows"]:
             del tree["windows"], tree["glazings"]
         random_laws.add(Draw(f"laws {seed}"), tree)
+        random_laws.add_to_sky(Draw(f"sky {seed}"), tree["site"])
         random_air.controlled_flows(tree)
         random_air.operative_set_points(tree)
         random_heat_sources.add(Draw(f"heat sources {seed}"), tree)

@@ -27,6 +27,14 @@ def add(draw: Draw, tree: Json) -> None:
         tree["weather"] = _weather(draw)
 
 
+def add_to_sky(draw: Draw, site: Json) -> None:
+    """How the sky radiates on tilted surfaces, and by day."""
+    if draw.chance(0.2):
+        site["sky_exponent"] = draw.number(0.8, 2.0)
+    if draw.chance(0.2):
+        site["sky_diurnal"] = draw.number(-60.0, 60.0)
+
+
 def _law(draw: Draw, formula: str, valid: str, numbers: Json) -> Json:
     """A law with its numbers beside it or under a key."""
     law: Json = {"formula": formula} | ({"numbers": numbers} if draw.chance(0.4) else numbers)

@@ -37,6 +37,9 @@ def add(draw: Draw, tree: Json) -> None:
         block |= {"far": draw.number(3.0, 25.0), "depth": draw.number(6.0, 25.0)}
     if draw.chance(0.3):
         block["basement_depth"] = draw.number(0.5, 3.0)
+        contact = Draw(f"contact {block['basement_depth']}").of("both", "floor", "walls")
+        if contact != "both":
+            block["contact"] = contact
     if draw.chance(0.3):
         block["edge"] = {
             "position": draw.of("horizontal", "vertical"),
@@ -58,6 +61,7 @@ def add(draw: Draw, tree: Json) -> None:
     if isinstance(area, float | int) and area > 4.0 and draw.chance(0.25):
         # Three dimensions take a second or two.
         block.pop("basement_depth", None)
+        block.pop("contact", None)
         block["width"] = (area * draw.number(0.3, 1.0)) ** 0.5
         block["length"] = area / block["width"]
     tree["soil_blocks"] = {"soil_below": block}

@@ -314,8 +314,8 @@ def everything_melting(wax: str, salt: str, curve: str) -> Building:
 OPTIONAL = {
     "site.air_density": 1.16,
     "site.air_specific_heat": 1012,
-    "site.sky_exponent": 1.4,
-    "site.sky_diurnal": -12,
+    "site.sky_exponent": {"value": 1.4, "source": "between an isotropic sky and Walton 1983"},
+    "site.sky_diurnal": {"value": -12, "source": "a pyrgeometer beside the model"},
     "glazings.plain.transmittance": 0.6,
     "glazings.listed.angular.back": {"transmittance": 0.7, "reflectance": 0.15, "absorptance": [0.15]},
     "surfaces.north.outside.convection": {"kind": "measured", "column": "h_north"},

@@ -92,17 +92,19 @@ def _excess(climate: Climate, hours: Steps, air: Array, radiation: tuple[float, 
     chapter 18: sol-air temperature).
     """
     absorptance, emissivity, film = radiation
-    sun = _without_gaps(column_means(climate.record, "global_horizontal", hours))
-    sky = channel_values(climate.record, "infrared", hours)[:, 0]
+    record = climate.record
+    # As completed for the place of the building: the global irradiance may have been measured in parts.
+    sun = _without_gaps(column_means(climate.used.record, "global_horizontal", hours))
+    sky = channel_values(record, "infrared", hours)[:, 0]
     if np.isnan(sky).any():
         needed = ("dew_point", "cloud_cover")
-        if any(climate.record.columns.get(name) is None for name in needed):
+        if any(record.columns.get(name) is None for name in needed):
             raise InputError(
-                f"{climate.record.file}: found no infrared radiation of the sky in all hours, and no dew "
+                f"{record.file}: found no infrared radiation of the sky in all hours, and no dew "
                 "point and cloud cover to estimate it; expected it where a block of soil has 'absorptance'. "
                 "Give the column infrared, or remove 'absorptance' from soil_blocks"
             )
-        dew_point, cloud_cover = (channel_values(climate.record, name, hours)[:, 0] for name in needed)
+        dew_point, cloud_cover = (channel_values(record, name, hours)[:, 0] for name in needed)
         sky = _without_gaps(np.where(np.isnan(sky), sky_emission(air, dew_point, cloud_cover), sky))
     net = absorptance * np.maximum(sun, 0.0) + emissivity * (sky - STEFAN_BOLTZMANN * (air + KELVIN) ** 4)
     return np.asarray(net / film)
