@@ -258,6 +258,7 @@ def _laws_as_text(tree: Json) -> None:
     tree["materials"]["board"]["conductivity"] = {"formula": "k*(1 + a*T)", "k": 0.19, "a": 0.003}
     tree["zones"]["room"]["infiltration"] = {"formula": "c*sqrt(0.02*abs(dT) + 0.01*V^2)", "c": 0.8}
     tree["site"]["sky"] = {"kind": "text", "formula": "a + b*sqrt(pw/100)", "a": 0.52, "b": 0.065}
+    tree["site"] |= {"sky_exponent": 1.2, "sky_diurnal": 15}
 
 
 def _derived_outputs(tree: Json) -> None:
