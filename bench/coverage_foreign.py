@@ -60,9 +60,7 @@ TRUTHS = {
 }
 #: Standard deviation of a reading of the pyrgeometer, as a part of it. [-]
 PYRGEOMETER = 0.01
-#: A sky that was measured has no error of a model by day.
-MEASURED = {"site.sky": "measured", "site.sky_diurnal": 0.0}
-#: That program has an isotropic sky in the infrared. (The numbers are those of the shipped cell.)
+#: That program has an isotropic sky in the infrared. (The range is that of the shipped cell.)
 ISOTROPIC = {"site.sky_exponent": 1.0}
 #: Numbers of the same melting curve, and what the program has where it draws none.
 OF_CURVE = {
@@ -115,7 +113,7 @@ def study_of(
     parameters = identification.pop("parameters")
     if measured_sky:
         table["infrared"] = infrared(folder, program, seed).reindex(table.index)
-        columns, building = columns | {"infrared": "infrared"}, building.replace(MEASURED)
+        columns, building = columns | {"infrared": "infrared"}, building.replace({"site.sky": "measured"})
         parameters = {
             path: how for path, how in parameters.items() if not path.startswith(("site.sky.", "site.cloud."))
         }

@@ -454,7 +454,7 @@ class Building(Description):
         >>> from mascarin import examples
         >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
         >>> cell.check()[0]
-        'LGI cell: 2 zones, 13 surfaces, 335 parameters'
+        'LGI cell: 2 zones, 13 surfaces, 334 parameters'
         """
         return check(self, seconds_of(step))
 

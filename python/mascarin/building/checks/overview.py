@@ -72,7 +72,7 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
     >>> from mascarin import examples
     >>> from mascarin.building import load
     >>> check(load(examples.FOLDER / "lgi" / "building.yaml"))[0]
-    'LGI cell: 2 zones, 13 surfaces, 335 parameters'
+    'LGI cell: 2 zones, 13 surfaces, 334 parameters'
     """
     require_accepted(building, step_seconds)
     mesh, ratings = choose(building, step_seconds), window_ratings(building, step_seconds)
