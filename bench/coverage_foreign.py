@@ -211,8 +211,8 @@ def main() -> None:
         print(__doc__)
         return
     folder, program = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-    given = sys.argv[3:]
-    *numbers, sky = [*given, *("4", "0", "5", "modelled")[len(given) :]]
+    options = sys.argv[3:]
+    *numbers, sky = [*options, *("4", "0", "5", "modelled")[len(options) :]]
     count, first, days = (int(text) for text in numbers)
     kind = f"coverage-{days}" + ("-measured" if sky == "measured" else "")
     folder.mkdir(parents=True, exist_ok=True)

@@ -97,10 +97,10 @@ def test_a_diurnal_part_is_the_sine_of_the_altitude_of_the_sun(tmp_path: Path, d
     times = plain.index
     altitude = pvlib.solarposition.get_solarposition(times, 39.83, -104.65)["elevation"]
     expected = 30.0 * np.sin(np.radians(altitude))
-    found = np.asarray(emission[1] - emission[0])
+    difference = np.asarray(emission[1] - emission[0])
     assert expected.min() < -10.0
     assert expected.max() > 28.0
-    assert np.abs(found - expected.to_numpy())[1:].max() < 0.1
+    assert np.abs(difference - expected.to_numpy())[1:].max() < 0.1
 
 
 def test_an_isotropic_sky_cools_walls_more(tmp_path: Path, denver: mc.Climate) -> None:

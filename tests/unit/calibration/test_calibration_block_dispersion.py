@@ -69,11 +69,11 @@ def test_blocks_of_all_experiments_count() -> None:
 def test_intervals_and_bands_are_wider_by_its_root() -> None:
     """With priors that say nothing, intervals of parameters are wider by 2, variances of bands by 4."""
     rng = np.random.default_rng(1)
-    one = np.eye(1)
+    unit = np.eye(1)
     none = np.zeros(0)
     posterior = JointPosterior(
-        np.array([0.5]), np.array([0.5]), 1e-4 * one, 0.5 + 0.01 * rng.standard_normal((4000, 1)),
-        Discrepancy(one, one, one, np.ones(1), np.ones(1), 4.0), (), np.zeros(20), 0.0, np.array([1e3]),
+        np.array([0.5]), np.array([0.5]), 1e-4 * unit, 0.5 + 0.01 * rng.standard_normal((4000, 1)),
+        Discrepancy(unit, unit, unit, np.ones(1), np.ones(1), 4.0), (), np.zeros(20), 0.0, np.array([1e3]),
         np.zeros(1), none, none, none, none,
     )  # fmt: skip
     wide = replace(posterior, dispersion=4.0)

@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin.calibration.errors.day_blocks import product
+
 if TYPE_CHECKING:
     from mascarin.calibration.errors.day_blocks import DayGaussian, Experiments
 
@@ -53,32 +55,37 @@ def block_dispersion(gaussian: Experiments, errors: Sequence[Floats], days: floa
     Four blocks of five days, whose common effect alternates between 2 and -2 where it should be the same:
 
     >>> from mascarin.calibration.errors.day_blocks import DayGaussian, Experiments
-    >>> one = DayGaussian(np.ones((20, 1, 1)), np.ones((20, 1, 1)), np.ones((20, 1), dtype=bool))
+    >>> level = DayGaussian(np.ones((20, 1, 1)), np.ones((20, 1, 1)), np.ones((20, 1), dtype=bool))
     >>> values = np.repeat([2.0, -2.0, 2.0, -2.0], 5)[:, None]
-    >>> round(block_dispersion(Experiments([one]), [values], 5.0), 1)  # 10^2 over 5 - 5^2/21
+    >>> round(block_dispersion(Experiments([level]), [values], 5.0), 1)  # 10^2 over 5 - 5^2/21
     26.2
-    >>> block_dispersion(Experiments([one]), [values], 10.0)
+    >>> block_dispersion(Experiments([level]), [values], 10.0)
     1.0
     """
     length = max(1, math.ceil(days - 1e-9))
+    blocks = [np.array_split(np.arange(len(part)), max(1, len(part) // length)) for part in errors]
+    if sum(map(len, blocks)) < _FEWEST:
+        return 1.0
     coefficients, covariance = gaussian.coefficients(errors), gaussian.covariance
-    square, count, blocks = 0.0, 0, 0
-    for part, values in zip(gaussian.parts, errors, strict=True):
-        score, information = _of_days(part, values, coefficients)
-        for block in np.array_split(np.arange(len(score)), max(1, len(score) // length)):
-            mean = information[block].sum(axis=0)
-            expected = mean - mean @ covariance @ mean
+    square, count = 0.0, 0
+    for part, values, blocks_of_part in zip(gaussian.parts, errors, blocks, strict=True):
+        for block in blocks_of_part:
+            score, information = _of_block(part, values, coefficients, block)
+            expected = information - information @ covariance @ information
             variance, direction = np.linalg.eigh(0.5 * (expected + expected.T))
             informed = variance > _INFORMED
-            along = direction.T[informed] @ score[block].sum(axis=0)
+            along = direction.T[informed] @ score
             square += float(np.sum(along**2 / variance[informed]))
-            count, blocks = count + int(informed.sum()), blocks + 1
-    return max(1.0, square / count) if count and blocks >= _FEWEST else 1.0
+            count += int(informed.sum())
+    return max(1.0, square / count) if count else 1.0
 
 
-def _of_days(part: DayGaussian, values: Floats, coefficients: Floats) -> tuple[Floats, Floats]:
-    """Derivative (D, q) of the log density of each day by the coefficients, and its precision (D, q, q)."""
-    weighted, columns = part.weighted_columns, np.where(part.present[:, :, None], part.columns, 0.0)
-    remaining = np.where(part.present, values - columns @ coefficients, 0.0)
-    score = np.einsum("dnq,dn->dq", weighted, remaining)
-    return score, np.swapaxes(columns, 1, 2) @ weighted
+def _of_block(
+    part: DayGaussian, values: Floats, coefficients: Floats, block: NDArray[np.int64]
+) -> tuple[Floats, Floats]:
+    """Derivative (q,) of the log density of some days by the coefficients, and its precision (q, q). [-]"""
+    present = part.present[block]
+    weighted, columns = part.weighted_columns[block], np.where(present[:, :, None], part.columns[block], 0.0)
+    remaining = np.where(present, values[block] - columns @ coefficients, 0.0)
+    score = np.einsum("dnq,dn->q", weighted, remaining)
+    return score, product(np.swapaxes(columns, 1, 2), weighted).sum(axis=0)

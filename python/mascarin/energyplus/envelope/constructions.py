@@ -122,10 +122,10 @@ def light_outside(context: Context, layers: list[Section]) -> list[Section]:
         Layers from outside to inside.
     """
     materials = context.section("materials")
-    held = [_held(layer, materials[layer["material"]]) for layer in layers]
+    numbers = [_held(layer, materials[layer["material"]]) for layer in layers]
     light = []
-    for k, (layer, (resistance, heat)) in enumerate(zip(layers, held, strict=True)):
-        insulation = sum(inner for inner, _ in held[k + 1 :])
+    for k, (layer, (resistance, heat)) in enumerate(zip(layers, numbers, strict=True)):
+        insulation = sum(inner for inner, _ in numbers[k + 1 :])
         if insulation >= _INSULATION and heat * insulation > _SLOW:
             name = context.names.of("materials", f"{layer['material']} {layer['thickness']:g} m on soil")
             materials[name] = {"kind": "resistance", "resistance": round(resistance, 6)}

@@ -162,14 +162,14 @@ def insulated(context: Context, surface: IdfSurface, name: str) -> str:
     layer = _outside_insulation(context, context.model.named(surface.beyond, "Foundation:Kiva"))
     if layer is None:
         return name
-    held = context.section("constructions")
+    constructions = context.section("constructions")
     material = context.names.of("materials", f"{layer.name} outside of walls")
     context.section("materials")[material] = {
         "kind": "resistance",
         "resistance": round(_resistance(layer), 6),
     }
     outside = context.names.of("constructions", f"{name} and {layer.name}")
-    held[outside] = {"layers": [{"material": material}, *held[name]["layers"]]}
+    constructions[outside] = {"layers": [{"material": material}, *constructions[name]["layers"]]}
     return outside
 
 
