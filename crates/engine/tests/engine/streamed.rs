@@ -4,7 +4,7 @@ use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_w
 use crate::common::{ALL_SCHEMES, forcing, options, run, values, warmup};
 use mascarin_engine::RunControl;
 use mascarin_engine::error::EngineError;
-use mascarin_engine::forcing::Forcing;
+use mascarin_engine::forcing::{Forcing, ForcingBlocks};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::outputs::Output;
 use mascarin_engine::run::{Options, simulate_in_blocks};
@@ -32,7 +32,7 @@ fn blocks_are_the_records_of_a_run() {
             let whole = run(&plan, &weather, &options);
             let mut blocks: Vec<Vec<f64>> = Vec::new();
             let watch = RunControl::default();
-            let streamed = simulate_in_blocks(&plan, &numbers, &drive, &options, &watch, rows, |block| {
+            let streamed = simulate_in_blocks(&plan, &numbers, &mut ForcingBlocks::one(drive), &options, &watch, rows, |block| {
                 blocks.push(block);
                 Ok(())
             })
@@ -60,7 +60,7 @@ fn a_refused_block_ends_the_run() {
     let (numbers, stages) = (values(&plan), options.scheme.weights().len());
     let drive = Forcing::new(&weather, stages, plan.n_channels()).unwrap();
     let (watch, mut taken) = (RunControl::default(), 0);
-    let ended = simulate_in_blocks(&plan, &numbers, &drive, &options, &watch, 10, |_| {
+    let ended = simulate_in_blocks(&plan, &numbers, &mut ForcingBlocks::one(drive), &options, &watch, 10, |_| {
         taken += 1;
         if taken < 3 { Ok(()) } else { Err(EngineError::Interrupted) }
     });
