@@ -149,6 +149,7 @@ def sun_over_steps(record: WeatherRecord, latitude: float, longitude: float, ste
     span = (first - reach, steps.last + reach)
     if steps.part is None or states_position(record):
         return sun_over(record, latitude, longitude, span, first)
+    reach += _OVERLAP * record.grid.interval
     part = (first + float(steps.edges[0]) - reach, first + float(steps.edges[-1]) + reach)
     return SunPath.over(latitude, longitude, *span, first, part)
 
@@ -166,7 +167,7 @@ _LAST: Final[list[_Kept]] = []
 #: Steps whose sun is worked out together.
 _ROWS: Final = 2**15
 #: Intervals by which the values of two parts of a period overlap, at most.
-_OVERLAP: Final = 16
+_OVERLAP: Final = 64
 #: A year in steps of 15 min takes 10 MB. [B]
 _MOST_KEPT: Final = 16 * 2**20
 

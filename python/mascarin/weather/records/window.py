@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from mascarin.tables.arrays import Array
@@ -11,7 +13,16 @@ from mascarin.tables.record import Record
 from mascarin.tables.steps import Steps
 
 
-def window(record: Record, name: str, first: float, last: float) -> tuple[float, Array, str]:
+#: Where a part of a period is looked at, its values begin at a multiple of so many intervals of the period:
+#: products of matrices have the bits of the whole, whose last rows a library may add up in another order.
+_TOGETHER: Final = 16
+#: Intervals behind a part: the last of them change nothing in it.
+_BEHIND: Final = 8
+
+
+def window(
+    record: Record, name: str, first: float, last: float, around: tuple[float, float] | None = None
+) -> tuple[float, Array, str]:
     """Values of a column over a span and a little more.
 
     Parameters
@@ -22,6 +33,8 @@ def window(record: Record, name: str, first: float, last: float) -> tuple[float,
         Column.
     first, last : float
         Span, seconds since 1970-01-01 UTC [s].
+    around : (float, float), optional
+        A longer span whose values are given; those outside of the span may be missing. [s]
 
     Returns
     -------
@@ -38,7 +51,7 @@ def window(record: Record, name: str, first: float, last: float) -> tuple[float,
         A value that the span needs is missing.
     """
     kind = record.kinds[name]
-    start, rows = record.grid.rows(first, last)
+    start, rows = record.grid.rows(*(around or (first, last)))
     values = values_in(record.columns[name], record.closing.get(name, np.nan), rows, kind)
     gaps = np.isnan(values)
     if gaps.any():
@@ -75,10 +88,19 @@ def window_of_steps(record: Record, name: str, steps: Steps) -> tuple[float, int
     InputError
         A value that the steps need is missing.
     """
-    origin = steps.first
-    start, values, kind = window(record, name, origin + steps.edges[0], origin + steps.edges[-1])
-    begin = start if steps.part is None else record.grid.begin(origin + steps.begin)
-    return begin - origin, round((start - begin) / record.grid.interval), values, kind
+    grid, origin = record.grid, steps.first
+    first, last = origin + steps.edges[0], origin + steps.edges[-1]
+    if steps.part is None:
+        start, values, kind = window(record, name, first, last)
+        return start - origin, 0, values, kind
+    begin = grid.begin(origin + steps.part.begin)
+    before = round((grid.begin(first) - begin) / grid.interval)
+    longer = (
+        first - before % _TOGETHER * grid.interval,
+        min(last + _BEHIND * grid.interval, origin + steps.part.end),
+    )
+    _, values, kind = window(record, name, first, last, longer)
+    return begin - origin, before - before % _TOGETHER, values, kind
 
 
 def _held(values: Array) -> Array:
