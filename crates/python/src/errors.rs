@@ -181,7 +181,8 @@ pub fn attended_blocks<T: Send>(
         let worker = std::thread::Builder::new().spawn_scoped(scope, move || {
             // Nobody takes or supplies a block of a call that is being stopped.
             let send = |sent| sender.send(sent).map_err(|_| EngineError::Interrupted);
-            let ask = || send(Sent::Request).and_then(|()| supplied.recv().map_err(|_| EngineError::Interrupted));
+            let ask =
+                || send(Sent::Request).and_then(|()| supplied.recv().map_err(|_| EngineError::Interrupted));
             let result = work(watch, &|block| send(Sent::Block(block)), &ask);
             // The receiver lives until the worker ends, unless the call is being stopped.
             let _ = sender.send(Sent::End);

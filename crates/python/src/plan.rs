@@ -21,7 +21,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::errors::{
-    EngineInputError, Exchange, abandonable, attended, attended_blocks, caught, done_members, done_steps, to_python,
+    EngineInputError, Exchange, abandonable, attended, attended_blocks, caught, done_members, done_steps,
+    to_python,
 };
 use crate::options::RunOptions;
 

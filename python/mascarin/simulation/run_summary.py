@@ -12,8 +12,6 @@ from mascarin.simulation.checks.warning_kinds import RunWarning, kinds_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import numpy as np
-
     from mascarin.building import Output
     from mascarin.simulation.checks.energy import EnergyLedger
     from mascarin.simulation.checks.judgement import Judgement

@@ -1,4 +1,4 @@
-"""The forcing of a run: one array of all steps, or blocks of steps that are worked out when a run comes to them.
+"""The forcing of a run: one array, or blocks of steps that are worked out when a run comes to them.
 
 A long run into a file takes the memory of one block. The blocks have the bits that all steps together have:
 times count from the start of the period, and what is added up goes on from block to block
@@ -8,17 +8,23 @@ times count from the start of the period, and what is added up goes on from bloc
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin._io import memory
-from mascarin.tables.arrays import Array
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Array = npt.NDArray[np.float64]
 
 #: A forcing of this size is one array: a year in steps of 15 min takes 10 MB. [B]
 SMALL: Final = 16 * 2**20
 #: Steps of a block.
 STEPS: Final = 2**13
+#: From this run in memory on all steps stay there: that takes less time than to work them out for each run.
+_AGAIN: Final = 2
 #: Channel of the outdoor air.
 _AIR: Final = 0
 
@@ -57,6 +63,7 @@ class ForcingBlocks:
         self._blocks = blocks
         self._ends = dict(ends or {})
         self._whole: Array | None = None
+        self._times = 0
 
     @classmethod
     def of(cls, whole: Array) -> ForcingBlocks:
@@ -86,11 +93,8 @@ class ForcingBlocks:
             They take more memory than there is.
         """
         if self._whole is None:
-            memory.require(
-                float(self.nbytes),
-                f"the weather of {len(self)} steps",
-                "take a longer step or a shorter period",
-            )
+            advice = "take a longer step or a shorter period"
+            memory.require(float(self.nbytes), f"the weather of {len(self)} steps", advice)
             out, done = np.empty(self.shape), 0
             for block in self._blocks():
                 out[done : done + len(block)] = block
@@ -98,9 +102,19 @@ class ForcingBlocks:
             self._whole = out
         return self._whole
 
-    def blocks(self) -> Iterator[Array]:
-        """The blocks of steps; one where all steps are in memory. [unit of each channel]"""
-        return self._blocks() if self._whole is None else iter([self._whole])
+    def blocks(self, *, keeps_steps: bool = False) -> Iterator[Array]:
+        """The blocks of steps; one where all steps are in memory. [unit of each channel]
+
+        Parameters
+        ----------
+        keeps_steps : bool
+            Whether all steps may stay in memory from the second time on.
+        """
+        if keeps_steps:
+            self._times += 1
+        if self._whole is None and self._times < _AGAIN:
+            return self._blocks()
+        return iter([self.whole])
 
     @property
     def opening(self) -> Array:

@@ -235,7 +235,8 @@ def column_means(record: Record, name: str, steps: Steps) -> Array:
     start, before, values, kind = window_of_steps(record, name, steps)
     knots = start + record.grid.interval * (before + np.arange(len(values) + (kind == "mean")))
     # Fine enough that the mean of straight lines is exact: the integral at every knot and edge.
-    nodes, integral = np.union1d(knots, edges), np.empty(0)
+    nodes: Array = np.union1d(knots, edges)
+    integral: Array = np.empty(0)
     if steps.part is not None and not steps.opens:
         # It goes on from where the part before ended.
         nodes, integral = nodes[nodes >= edges[0]], steps.part.sums["mean", id(record), name, edges[0]][1]
@@ -282,8 +283,8 @@ def column_values(record: Record, name: str, steps: Steps) -> Array:
     positive = name != "wind_direction" and not (record.columns[name] < 0.0).any()
     nodes = steady(values, pieces_for(interval), positive=positive)
     profile = PiecewiseProfile(start, interval, nodes, before)
-    result = _balanced(profile, edges, stage, weights, additive=not positive)
-    return result % 360.0 if name == "wind_direction" else result
+    balanced = _balanced(profile, edges, stage, weights, additive=not positive)
+    return balanced % 360.0 if name == "wind_direction" else balanced
 
 
 def _unwrapped(directions: Array, steps: Steps, before: int, record: int) -> Array:
@@ -294,7 +295,8 @@ def _unwrapped(directions: Array, steps: Steps, before: int, record: int) -> Arr
     shorter = np.mod(change + 180.0, 360.0) - 180.0
     shorter[(shorter == -180.0) & (change > 0.0)] = 180.0
     turns = np.where(np.abs(change) < 180.0, 0.0, shorter - change)
-    first, turned = before, np.zeros(1)
+    first = before
+    turned: Array = np.zeros(1)
     if not steps.opens:
         first, turned = steps.part.sums["turns", record, steps.edges[0]]
     # The part before overlaps with this one: from its turns at the first direction on.

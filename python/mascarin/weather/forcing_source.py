@@ -1,4 +1,4 @@
-"""Weather, measured columns and schedules of a building, at the stages of all steps of a run or of a block of them."""
+"""Weather, measured columns and schedules of a building, at the stages of steps: all of a run, or a block."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.tables.arrays import Array
 from mascarin.tables.forcing_blocks import ForcingBlocks
 from mascarin.tables.steps import Steps
 from mascarin.weather.checks.place_check import require_place
@@ -19,7 +18,11 @@ from mascarin.weather.records.channels import CHANNELS
 from mascarin.weather.schedules import Courses
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from mascarin.weather.records.site import SiteLike
+
+    Array = npt.NDArray[np.float64]
 
 _AIR = CHANNELS.index("air_temperature")
 
@@ -97,13 +100,13 @@ class ForcingSource:
         if steps.opens:
             require_place(record, self._site)
             require_period(record, steps)
-        out = forcing(
+        channels = forcing(
             record, self._climate.completed(self._site).record, self._site, steps, self._columns,
             self._measured, self._limits, len(self._courses),
         )  # fmt: skip
         if len(self._courses):
-            self._courses.fill(out[..., -len(self._courses) :], steps)
-        return out
+            self._courses.fill(channels[..., -len(self._courses) :], steps)
+        return np.asarray(channels, dtype=np.float64)
 
 
 def in_blocks(

@@ -113,8 +113,7 @@ impl<'a, S: Real> Course<'a, S> {
         stepper.set_control(control);
         prepare(&mut stepper, options);
         let mut state = stepper.begin(&options.initial, weather.row(0, 0));
-        let (cycles, warm_up_change) =
-            warm_up(&mut stepper, &mut state, weather, options, control, observe)?;
+        let (cycles, warm_up_change) = warm_up(&mut stepper, &mut state, weather, options, control, observe)?;
         let limits = PhysicalLimits::new(&state, options.scheme);
         let validity = Validity::new(&stepper.model);
         let energy_balance = EnergyBalance::new();

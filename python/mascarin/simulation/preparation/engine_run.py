@@ -98,7 +98,7 @@ class CompiledRun:
 
     @property
     def forcing(self) -> Array:
-        """The forcing of all steps, shape (steps, stages, channels); it stays in memory. [unit of each channel]"""
+        """The forcing of all steps, shape (steps, stages, channels); it stays in memory."""
         return self.forcing_blocks.whole
 
     @cached_property
@@ -132,7 +132,7 @@ class CompiledRun:
     @property
     def intervals(self) -> int:
         """Record intervals: steps, where these are of one length."""
-        return round(self.begin_of(self.steps) / self.settings["dt"])
+        return round(self.begin_of(self.steps) / float(self.settings["dt"]))
 
     @cached_property
     def hash(self) -> str:
@@ -227,7 +227,7 @@ class CompiledRun:
         SolverError
             A step or the repeated first period did not converge.
         """
-        recorded, blocks = readings or self.readings, self._blocks(vector)
+        recorded, blocks = readings or self.readings, self._blocks(vector, keeps_steps=keeps_rows)
         with translated(self.dated):
             if progress is not None:
                 progress(0, self.steps)  # the time left counts from here
@@ -243,12 +243,11 @@ class CompiledRun:
             )
         return raw
 
-    def _blocks(self, vector: Array) -> Iterator[Array]:
+    def _blocks(self, vector: Array, *, keeps_steps: bool) -> Iterator[Array]:
         """The forcing for a parameter vector in blocks of steps, the first with the repeated first period."""
-        blocks = self.forcing_blocks
         if self.inputs is not None or self.settings["warmup_steps"] > STEPS:
             return iter([self.forcing_at(vector)])
-        return blocks.blocks()
+        return self.forcing_blocks.blocks(keeps_steps=keeps_steps)
 
     def ensemble(
         self,

@@ -231,8 +231,8 @@ def forcing_of(
     """Climate, measured columns and schedules at every stage, and what of the weather is a parameter.
 
     A long forcing is looked at in blocks of steps, and worked out again where it is needed, unless it is not
-    to be `divided`, or something needs all steps at once: chosen steps, errors of the weather as parameters, a
-    stated position of the sun.
+    to be `divided`, or something needs all steps at once: chosen steps, errors of the weather as parameters,
+    a stated position of the sun.
 
     Raises
     ------

@@ -12,7 +12,6 @@ from mascarin.tables.grid import values_in
 from mascarin.tables.record import Record
 from mascarin.tables.steps import Steps
 
-
 #: Where a part of a period is looked at, its values begin at a multiple of so many intervals of the period:
 #: products of matrices have the bits of the whole, whose last rows a library may add up in another order.
 _TOGETHER: Final = 16
