@@ -66,11 +66,11 @@ class ForcingBlocks:
         self._times = 0
 
     @classmethod
-    def of(cls, whole: Array) -> ForcingBlocks:
+    def of(cls, forcing: Array) -> ForcingBlocks:
         """From all steps, shape (steps, stages, channels). [unit of each channel]"""
-        made = cls((whole.shape[0], whole.shape[1], whole.shape[2]), lambda: iter([whole]))
-        made._whole = whole
-        return made
+        blocks = cls((forcing.shape[0], forcing.shape[1], forcing.shape[2]), lambda: iter([forcing]))
+        blocks._whole = forcing
+        return blocks
 
     def __len__(self) -> int:
         return self.shape[0]
@@ -125,10 +125,11 @@ class ForcingBlocks:
     @property
     def air_temperature(self) -> float:
         """Mean of the outdoor air at the last stages of all steps. [degC]"""
-        known = self._air_temperature
-        return float(self.whole[:, -1, _AIR].mean()) if known is None else known
+        if self._air_temperature is None:
+            return float(self.whole[:, -1, _AIR].mean())
+        return self._air_temperature
 
     def ends(self, channel: int) -> Array:
         """A channel at the last stages of all steps, shape (steps,). [its unit]"""
-        known = self._ends.get(channel)
-        return self.whole[:, -1, channel] if known is None else known
+        series = self._ends.get(channel)
+        return self.whole[:, -1, channel] if series is None else series

@@ -143,5 +143,5 @@ def in_blocks(
         for channel, values in ends.items():
             values.append(block[:, -1, channel].copy())
     air_temperature = float(np.concatenate(ends[_AIR]).mean())
-    known = {channel: np.concatenate(ends[channel]) for channel in channels}
-    return ForcingBlocks(shape, lambda: map(source.at, parts()), known, air_temperature)
+    kept_series = {channel: np.concatenate(ends[channel]) for channel in channels}
+    return ForcingBlocks(shape, lambda: map(source.at, parts()), kept_series, air_temperature)

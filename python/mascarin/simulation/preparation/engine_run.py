@@ -113,13 +113,7 @@ class CompiledRun:
         return len(self.forcing_blocks)
 
     def begin_of(self, step: int) -> float:
-        """Start of a step, from the start of the run. [s]
-
-        Parameters
-        ----------
-        step : int
-            Number of the step, from 0; that of the steps gives the end of the run.
-        """
+        """Start of a step, by its number from 0, since the start of the run. [s]"""
         return float(self.edges[step] if "halvings" in self.settings else self.settings["dt"] * step)
 
     @property
@@ -231,16 +225,12 @@ class CompiledRun:
         with translated(self.dated):
             if progress is not None:
                 progress(0, self.steps)  # the time left counts from here
+            rows_at_once = rows_of(len(recorded.columns), keeps_rows=keeps_rows)
             raw: dict[str, Any] = self.plan.simulate_into(
-                vector,
-                next(blocks),
-                self.options(recorded),
-                rows_of(len(recorded.columns), keeps_rows=keeps_rows),
-                lambda rows: take(recorded.values(rows)),
-                _of_total(progress, self.steps),
-                self.steps,
+                vector, next(blocks), self.options(recorded), rows_at_once,
+                lambda rows: take(recorded.values(rows)), _of_total(progress, self.steps), self.steps,
                 lambda: next(blocks, None),
-            )
+            )  # fmt: skip
         return raw
 
     def _blocks(self, vector: Array, *, keeps_steps: bool) -> Iterator[Array]:
@@ -456,13 +446,7 @@ class CompiledRun:
         )
 
     def dated(self, message: str) -> str:
-        """Add the local time to a message of the engine that names a step.
-
-        Parameters
-        ----------
-        message : str
-            The message.
-        """
+        """Add the local time to a message of the engine that names a step."""
 
         def stamped(match: re.Match[str]) -> str:
             step = min(int(match[1]), self.steps - 1)

@@ -262,11 +262,11 @@ def forcing_of(
         forcing = source.at(steps)
         check.require(forcing, steps)
         check.require_wind()
-        whole, inputs = with_weather_inputs(
+        corrected, inputs = with_weather_inputs(
             building, climate, description, forcing,
             times=times, scheme=scheme, measurements=measurements, halvings=halvings,
         )  # fmt: skip
-        return ForcingBlocks.of(whole), inputs
+        return ForcingBlocks.of(corrected), inputs
     parts = partial(Steps.parts, *in_period, STEPS)
     blocks = in_blocks(source, parts, check.require, shape, _set_points(building, description.channels))
     check.require_wind()

@@ -41,8 +41,8 @@ def rows_of(columns: int, *, keeps_rows: bool = False) -> int:
     4096
     """
     row = 8 * max(columns, 1)
-    few = max(SMALL // row, 1)
-    return few if keeps_rows else max(min(SIZE // row, ROWS), few)
+    least = max(SMALL // row, 1)
+    return least if keeps_rows else max(min(SIZE // row, ROWS), least)
 
 
 class InMemory:
