@@ -334,9 +334,9 @@ class Simulation(VectorRuns):
         """Run once, and write the series to a file while the run goes on.
 
         Series are not held in memory, nor is the weather of all steps of a run that is longer than a year at
-        15 min: each block of steps is worked out when the run comes to it, with the same bits. It is where steps
-        are chosen (``step="auto"``), the building corrects its weather (``weather``), the table states the
-        position of the sun, or a first period has over 8192 steps. The file appears when it is complete.
+        15 min: each block of steps is worked out when the run comes to it, with the same bits. It is where
+        steps are chosen (``step="auto"``), the building corrects its weather (``weather``), the table states
+        the position of the sun, or a first period has over 8192 steps. The file appears when it is complete.
 
         Parameters
         ----------
