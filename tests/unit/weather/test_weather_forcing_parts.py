@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from mascarin.building.base.time_series import ColumnCourse
-from mascarin.building.parts.air.schedule import FractionSchedule, TemperatureSchedule
+from mascarin.building.parts.air.schedule import FractionSchedule, Schedule, TemperatureSchedule
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import epoch_seconds
 from mascarin.weather import Climate, Place
@@ -76,7 +76,7 @@ def test_parts_have_the_bits_of_the_period(sun: str, minutes: int, step: float, 
             }
         }
     )
-    courses = {
+    courses: dict[str, Schedule | ColumnCourse] = {
         "people": people,
         "set point": TemperatureSchedule(value=20.0),
         "heater": ColumnCourse("power", ("P", "Q"), "kW", "people"),
@@ -99,6 +99,7 @@ def test_parts_have_the_bits_of_the_period(sun: str, minutes: int, step: float, 
 def test_a_typical_year_is_repeated_in_parts() -> None:
     """Three years over 29 February, in parts that begin anywhere in the year."""
     weather = Climate.from_epw("shipped:golden")
+    assert weather.site is not None
     source = ForcingSource(weather, weather.site, [], Courses(weather, {}, PARIS))
     period = (weather.grid.zone, "2019-11-03", "2022-02-07", 3600.0, "sdirk2")
     whole = source.at(Steps.over(*period))
