@@ -237,12 +237,16 @@ class Plan:
         rows: int,
         take: Callable[[_Array], object],
         report: Callable[[int], object] | None = None,
+        steps: int | None = None,
+        further: Callable[[], _Array | None] | None = None,
     ) -> dict[str, Any]:
         """One run: ledger [J] and counters; the entry `records` is empty.
 
         `take` gets the records (rows x outputs) in blocks of `rows` rows while the run goes on: the engine
         goes on while `take` works, by one block at most. What `take` raises ends the run and is raised.
-        `report` gets the number of steps done.
+        `report` gets the number of steps done. `forcing` may be the first block of `steps` steps: `further`
+        then gives the next ones, None after the last, each while the engine goes through the block before. A
+        repeated first period lies within the first block.
 
         `largest_change` is the largest change of a temperature in the last iteration of an accepted stage.
         [K] `largest_residual` is the largest residual of a heat balance in an accepted stage, all laws

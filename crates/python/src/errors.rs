@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::time::Duration;
 
 use mascarin_engine::RunControl;
@@ -112,11 +112,44 @@ pub fn done_steps(watch: &RunControl) -> usize {
 /// What a worker sends to the thread that waits for it.
 enum Sent {
     Block(Vec<f64>),
+    Request,
     End,
 }
 
 /// Gives a block of numbers to Python; it waits until the one before has been taken.
 pub type Give<'a> = &'a dyn Fn(Vec<f64>) -> Result<(), EngineError>;
+
+/// Asks Python for the next block of numbers.
+pub type Ask<'a> = &'a dyn Fn() -> Result<Vec<f64>, EngineError>;
+
+/// What Python takes from a worker and gives to it, in blocks of numbers.
+pub struct Exchange<T, G> {
+    /// Called with each block of the worker.
+    pub take: T,
+    /// Gives the next block for the worker; none after the last one.
+    pub give: G,
+}
+
+/// Blocks for a worker, one of which is prepared while the worker does without.
+struct Supply<G> {
+    give: G,
+    prepared: Option<Vec<f64>>,
+    sender: SyncSender<Vec<f64>>,
+}
+
+impl<G: FnMut() -> PyResult<Option<Vec<f64>>>> Supply<G> {
+    /// Hands the prepared block over, and prepares the next one.
+    fn hand_over(&mut self) -> PyResult<()> {
+        // An empty block where there is none: the engine says what it expected. A worker that is gone needs none.
+        let _ = self.sender.send(self.prepared.take().unwrap_or_default());
+        self.prepare()
+    }
+
+    fn prepare(&mut self) -> PyResult<()> {
+        self.prepared = (self.give)()?;
+        Ok(())
+    }
+}
 
 /// Runs `work` on another thread with the GIL released, passing Ctrl-C on to it and progress to `report`.
 pub fn attended<T: Send>(
@@ -124,28 +157,33 @@ pub fn attended<T: Send>(
     report: Option<Report<'_, '_>>,
     work: impl FnOnce(&RunControl) -> Result<T, EngineError> + Send,
 ) -> PyResult<T> {
-    attended_blocks(py, report, |_| Ok(()), |watch, _| work(watch))
+    let nothing = Exchange { take: |_| Ok(()), give: || Ok(None) };
+    attended_blocks(py, report, nothing, |watch, _, _| work(watch))
 }
 
-/// Runs `work` as `attended`, and calls `take` with each block of numbers that it gives while it goes on. An error of `take` ends it.
+/// Runs `work` as `attended`, and exchanges blocks of numbers with it while it goes on. An error of the exchange ends it.
 pub fn attended_blocks<T: Send>(
     py: Python<'_>,
     report: Option<Report<'_, '_>>,
-    mut take: impl FnMut(Vec<f64>) -> PyResult<()>,
-    work: impl FnOnce(&RunControl, Give<'_>) -> Result<T, EngineError> + Send,
+    exchange: Exchange<impl FnMut(Vec<f64>) -> PyResult<()>, impl FnMut() -> PyResult<Option<Vec<f64>>>>,
+    work: impl FnOnce(&RunControl, Give<'_>, Ask<'_>) -> Result<T, EngineError> + Send,
 ) -> PyResult<T> {
-    let watch = RunControl::default();
+    let (watch, Exchange { mut take, give }) = (RunControl::default(), exchange);
     // A block is handed over, not kept: one is filled while one is taken.
     let (sender, receiver) = sync_channel(0);
     let receiver = Mutex::new(receiver);
+    let (supplier, supplied) = sync_channel(1);
+    let mut supply = Supply { give, prepared: None, sender: supplier };
     let mut interruption = None;
     let before = INTERRUPTIONS.load(Ordering::Relaxed);
     let result = std::thread::scope(|scope| {
         let watch = &watch;
         let worker = std::thread::Builder::new().spawn_scoped(scope, move || {
-            // Nobody takes a block of a call that is being stopped.
-            let give = |block| sender.send(Sent::Block(block)).map_err(|_| EngineError::Interrupted);
-            let result = work(watch, &give);
+            // Nobody takes or supplies a block of a call that is being stopped.
+            let send = |sent| sender.send(sent).map_err(|_| EngineError::Interrupted);
+            let ask =
+                || send(Sent::Request).and_then(|()| supplied.recv().map_err(|_| EngineError::Interrupted));
+            let result = work(watch, &|block| send(Sent::Block(block)), &ask);
             // The receiver lives until the worker ends, unless the call is being stopped.
             let _ = sender.send(Sent::End);
             result
@@ -153,34 +191,27 @@ pub fn attended_blocks<T: Send>(
         let wait =
             || receiver.lock().map_or(Err(RecvTimeoutError::Disconnected), |end| end.recv_timeout(PULSE));
         let mut reported = 0;
+        let mut going_on = supply.prepare();
         loop {
-            let sent = py.detach(wait);
-            if matches!(sent, Ok(Sent::End) | Err(RecvTimeoutError::Disconnected)) {
-                break;
-            }
-            let mut set_control = py.check_signals();
-            if set_control.is_ok() && INTERRUPTIONS.load(Ordering::Relaxed) != before {
-                set_control = Err(PyKeyboardInterrupt::new_err("interrupted"));
-            }
-            if let (Ok(()), Ok(Sent::Block(block))) = (&set_control, sent) {
-                set_control = take(block);
-            }
-            if let (Ok(()), Some((report, done))) = (&set_control, report) {
-                // Again and again before the first unit is done, which may take long.
-                let done = done(watch);
-                if done == 0 || done != reported {
-                    reported = done;
-                    set_control = report.call1((done,)).map(drop);
-                }
-            }
-            if let Err(error) = set_control {
+            if let Err(error) = going_on {
                 watch.stop.store(true, Ordering::Relaxed);
                 interruption = Some(error);
                 break;
             }
+            let sent = py.detach(wait);
+            if matches!(sent, Ok(Sent::End) | Err(RecvTimeoutError::Disconnected)) {
+                break;
+            }
+            going_on = require_uninterrupted(py, before)
+                .and_then(|()| match sent {
+                    Ok(Sent::Block(block)) => take(block),
+                    Ok(Sent::Request) => supply.hand_over(),
+                    _ => Ok(()),
+                })
+                .and_then(|()| report_progress(report, watch, &mut reported));
         }
-        // A worker that waits with a block goes on, and finds that nobody takes it.
-        drop(receiver);
+        // A worker that waits with a block, or for one, goes on, and finds that nobody takes or supplies it.
+        drop((receiver, supply));
         Ok::<_, PyErr>(py.detach(|| worker.join()))
     })?;
     match (result, interruption) {
@@ -189,4 +220,24 @@ pub fn attended_blocks<T: Send>(
         (Ok(Err(error)), None) => Err(to_python(&error)),
         (Err(panic), None) => Err(defect(&*panic)),
     }
+}
+
+/// The error of a call that is to be stopped: by a signal, or because `interrupt` was called since a number of times.
+fn require_uninterrupted(py: Python<'_>, before: usize) -> PyResult<()> {
+    py.check_signals()?;
+    if INTERRUPTIONS.load(Ordering::Relaxed) == before {
+        return Ok(());
+    }
+    Err(PyKeyboardInterrupt::new_err("interrupted"))
+}
+
+/// Reports how many units are done, again and again before the first one, which may take long.
+fn report_progress(report: Option<Report<'_, '_>>, watch: &RunControl, reported: &mut usize) -> PyResult<()> {
+    let Some((report, done)) = report else { return Ok(()) };
+    let done = done(watch);
+    if done > 0 && done == *reported {
+        return Ok(());
+    }
+    *reported = done;
+    report.call1((done,)).map(drop)
 }

@@ -4,7 +4,7 @@ use mascarin_engine::RunControl;
 use mascarin_engine::derivatives::{Direction, slopes_along};
 use mascarin_engine::description::Description;
 use mascarin_engine::energy_balance::Flow;
-use mascarin_engine::forcing::Forcing;
+use mascarin_engine::forcing::{Forcing, ForcingBlocks};
 use mascarin_engine::linear_model;
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::run::ensemble;
@@ -21,7 +21,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::errors::{
-    EngineInputError, abandonable, attended, attended_blocks, caught, done_members, done_steps, to_python,
+    EngineInputError, Exchange, abandonable, attended, attended_blocks, caught, done_members, done_steps,
+    to_python,
 };
 use crate::options::RunOptions;
 
@@ -96,8 +97,9 @@ impl Plan {
     }
 
     /// One run: a dictionary of ledger and counters, whose records are empty. `take` is called with the records (rows x outputs) in blocks of
-    /// `rows` rows while the run goes on, `report` with the number of steps done.
-    #[pyo3(signature = (values, forcing, options, rows, take, report=None))]
+    /// `rows` rows while the run goes on, `report` with the number of steps done. Where the forcing has fewer than `steps` steps, `further` is
+    /// called for each next block of it, and is ahead of the run by one; after the last block it gives none.
+    #[pyo3(signature = (values, forcing, options, rows, take, report=None, steps=None, further=None))]
     #[allow(clippy::too_many_arguments, reason = "what a run needs, and where the records go")]
     fn simulate_into<'py>(
         &self,
@@ -108,6 +110,8 @@ impl Plan {
         rows: usize,
         take: &Bound<'py, PyAny>,
         report: Option<&Bound<'py, PyAny>>,
+        steps: Option<usize>,
+        further: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         caught(|| {
             let options = options.read()?;
@@ -120,8 +124,10 @@ impl Plan {
                 let shape = [block.len() / outputs.max(1), outputs];
                 take.call1((PyArray1::from_vec(py, block).reshape(shape)?,)).map(drop)
             };
-            let run = attended_blocks(py, report, hand_over, |watch, give| {
-                simulate_in_blocks(plan, values, &drive, &options, watch, rows, give)
+            let exchange = Exchange { take: hand_over, give: || further.map_or(Ok(None), block_of) };
+            let run = attended_blocks(py, report, exchange, |watch, give, ask| {
+                let mut forcing = ForcingBlocks::new(drive, steps.unwrap_or(drive.steps()), ask);
+                simulate_in_blocks(plan, values, &mut forcing, &options, watch, rows, give)
             })?;
             describe_run(py, &run, PyArray2::zeros(py, [0, outputs], false))
         })
@@ -240,6 +246,12 @@ impl Plan {
             Ok(result)
         })
     }
+}
+
+/// The numbers of the next block of a forcing, or none.
+fn block_of(further: &Bound<'_, PyAny>) -> PyResult<Option<Vec<f64>>> {
+    let block: Option<PyReadonlyArray3<'_, f64>> = further.call0()?.extract()?;
+    block.map(|block| Ok(contiguous(block.as_slice())?.to_vec())).transpose()
 }
 
 /// The numbers of an array, if they stand one after the other.

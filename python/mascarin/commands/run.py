@@ -374,7 +374,7 @@ def _print_cost(building: Building, simulation: Simulation) -> None:
     """Say how long shadows take, where it is long."""
     from mascarin.building.parts.self_shading import expected_seconds, obstructions, pairs_with_shades
 
-    steps, stages, _ = simulation.compiled.forcing.shape
+    steps, stages, _ = simulation.compiled.forcing_blocks.shape
     shades = pairs_with_shades(building)
     expected = expected_seconds(obstructions(building), steps * stages, shades=shades)
     if expected > LONG:

@@ -87,9 +87,9 @@ class EnsembleInputs:
     def keep(self, structure: Mapping[str, Any], simulation: Simulation) -> None:
         """Keep what was compiled for a structure; those of the oldest chunks are dropped."""
         _COMPILED[self.identity, repr(sorted(structure.items()))] = simulation
-        held = sum(simulation.compiled.forcing.nbytes for simulation in _COMPILED.values())
+        held = sum(simulation.compiled.forcing_blocks.nbytes for simulation in _COMPILED.values())
         while held > _MOST_COMPILED and len(_COMPILED) > 1:
-            held -= _COMPILED.popitem(last=False)[1].compiled.forcing.nbytes
+            held -= _COMPILED.popitem(last=False)[1].compiled.forcing_blocks.nbytes
 
 
 _COMPILED: OrderedDict[tuple[str, str], Simulation] = OrderedDict()

@@ -12,6 +12,7 @@ from mascarin.errors import SolverError
 from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind, of_kind
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.simulation import Simulation
+from mascarin.tables.forcing_blocks import ForcingBlocks
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -58,7 +59,7 @@ def of_short_run(simulation: Simulation, seconds: float = SHORT) -> tuple[RunWar
     seconds : float
         Length of the run. [s]
     """
-    repeated = float(simulation.compiled.edges[simulation.compiled.settings["warmup_steps"]])
+    repeated = simulation.compiled.begin_of(simulation.compiled.settings["warmup_steps"])
     intervals = round(max(seconds, repeated) / simulation.step_seconds)
     return of_nominal(_shortened(simulation, intervals))
 
@@ -75,6 +76,7 @@ def _shortened(simulation: Simulation, intervals: int) -> Simulation:
     if simulation.sequence is not None:
         steps = simulation.sequence.count_in(intervals)
         settings = {**settings, "halvings": settings["halvings"][:steps]}
-    shorter.compiled = replace(compiled, forcing=compiled.forcing[:steps], settings=settings)
+    forcing = ForcingBlocks.of(compiled.forcing[:steps])
+    shorter.compiled = replace(compiled, forcing_blocks=forcing, settings=settings)
     shorter.times = Times(times.first, last, simulation.step_seconds, times.zone)
     return shorter

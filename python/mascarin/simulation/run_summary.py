@@ -12,9 +12,6 @@ from mascarin.simulation.checks.warning_kinds import RunWarning, kinds_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import numpy as np
-    import numpy.typing as npt
-
     from mascarin.building import Output
     from mascarin.simulation.checks.energy import EnergyLedger
     from mascarin.simulation.checks.judgement import Judgement
@@ -108,7 +105,8 @@ class StoredRun:
 def start_note(
     initial: float | InitialTemperatures | None,
     settings: Mapping[str, Any],
-    edges: npt.NDArray[np.float64],
+    repeated_seconds: float,
+    steps: int,
     raw: Mapping[str, Any],
 ) -> str:
     """How the state at the start of a run was made, in words.
@@ -119,8 +117,10 @@ def start_note(
         The temperature or state that was stated; None where the first hours were repeated.
     settings : mapping
         Those of the engine.
-    edges : ndarray, shape (steps + 1,)
-        Ends of the steps, from the start. [s]
+    repeated_seconds : float
+        Length of the first period. [s]
+    steps : int
+        Steps of the run.
     raw : mapping
         What the engine says of the run.
     """
@@ -128,13 +128,13 @@ def start_note(
         return f"{initial:g} degC everywhere"
     if initial is not None:
         return initial.words
-    hours = float(edges[settings["warmup_steps"]]) / 3600.0
+    hours = repeated_seconds / 3600.0
     note = (
         f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
         f"by more than {settings['warmup_tolerance']:g} K (last change {raw['settled']:.4f} K)"
     )
     repeated = raw["cycles"] * settings["warmup_steps"]
-    share = repeated / (repeated + len(edges) - 1)
+    share = repeated / (repeated + steps)
     if raw["cycles"] < _MANY_CYCLES or share < _LARGE_SHARE:
         return note
     return f"{note}: {100.0 * share:.0f} % of all steps of the run. A stated start (initial) would save them"

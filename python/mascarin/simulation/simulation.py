@@ -154,7 +154,7 @@ class Simulation(VectorRuns):
         self.channels = tuple(description.channels)
         self.initial = prepare.start_of(stated_start, self.building, description, forcing, self.times.start)
         self.compiled = CompiledRun(
-            description=description.json, forcing=forcing,
+            description=description.json, forcing_blocks=forcing,
             paths=tuple(description.paths), values=description.values,
             settings=prepare.settings_of(
                 self.initial, forcing, step_seconds=self.step_seconds, scheme=scheme,
@@ -207,7 +207,7 @@ class Simulation(VectorRuns):
         {'zones.room.volume': 30.0}
         """
         with reporting(progress, "run") as report:
-            steps = len(self.compiled.forcing)
+            steps = self.compiled.steps
             report(0, steps)
             results = self.run_vector(self.vector(parameters or {}), progress=report)
             report(steps, steps)
@@ -333,8 +333,10 @@ class Simulation(VectorRuns):
     ) -> StoredRun:
         """Run once, and write the series to a file while the run goes on.
 
-        Series are not held in memory, the weather of all steps is: some 22 MB for a year at 15 min. The file
-        appears when it is complete.
+        Series are not held in memory, nor is the weather of all steps of a run that is longer than a year at
+        15 min: each block of steps is worked out when the run comes to it, with the same bits. It is where
+        steps are chosen (``step="auto"``), the building corrects its weather (``weather``), the table states
+        the position of the sun, or a first period has over 8192 steps. The file appears when it is complete.
 
         Parameters
         ----------
@@ -380,7 +382,7 @@ class Simulation(VectorRuns):
             reporting(progress, "run") as report,
             files.drafted(target, self.outputs, self.times, target.suffix.lower()) as draft,
         ):
-            steps = len(self.compiled.forcing)
+            steps = self.compiled.steps
             report(0, steps)
             summary = self._run_through(self.vector(parameters or {}), draft.take, report)
             draft.finish(summary.attributes(self.outputs, self.times.timezone))
@@ -408,7 +410,8 @@ class Simulation(VectorRuns):
         energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judged = run_warnings.of_engine(judgement, raw, self.compiled.dated, self.step_seconds, self.scheme)
-        step, about = self.step_seconds, self.building_warnings
+        step, about, settings = self.step_seconds, self.building_warnings, self.compiled.settings
+        repeated = self.compiled.begin_of(settings["warmup_steps"])
         return Finished(
             energy=energy,
             provenance=Provenance(
@@ -419,7 +422,7 @@ class Simulation(VectorRuns):
                 step_seconds=self.step_seconds,
                 steps=None if self.sequence is None else self.sequence.to_dict(),
                 scheme=self.scheme,
-                start=start_note(self.initial, self.compiled.settings, self.compiled.edges, raw),
+                start=start_note(self.initial, settings, repeated, self.compiled.steps, raw),
                 changed={**self._replaced, **self._changed(vector)},
                 newton_iterations=int(raw["iterations"]),
                 nested_stages=int(raw["nested"]),

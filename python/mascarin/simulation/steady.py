@@ -13,6 +13,7 @@ from mascarin._io.durations import seconds_of
 from mascarin.errors import SolverError
 from mascarin.simulation.checks.energy import FLOWS
 from mascarin.simulation.simulation import Simulation
+from mascarin.tables.forcing_blocks import ForcingBlocks
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -171,7 +172,8 @@ def steady(
     settings = dict(one_step.settings) | {"dt": _STEP, "initial": _BEGIN, "warmup_steps": 0}
 
     def through(steps: int) -> Any:
-        return replace(one_step, forcing=np.repeat(row, steps, axis=0), settings=settings, inputs=None)
+        forcing = ForcingBlocks.of(np.repeat(row, steps, axis=0))
+        return replace(one_step, forcing_blocks=forcing, settings=settings, inputs=None)
 
     before = through(_STEPS - 1).run(vector)[1]
     before_laws = {(law[0], law[1]): law[2] for law in before["out_of_range"]}

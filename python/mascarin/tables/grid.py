@@ -88,13 +88,27 @@ class Grid:
         rows : ndarray, shape (k + 1,)
             Row of each interval, then that in which the last one ends (`count` past the record's end).
         """
-        low = int(np.floor((start - self.start) / self.interval + 1e-9)) - _MARGIN
+        low = self._low(start)
         high = int(np.ceil((end - self.start) / self.interval - 1e-9)) + _MARGIN
         if not self.periodic:
-            low, high = max(low, 0), min(high, self.count)
+            high = min(high, self.count)
             return self.start + low * self.interval, np.arange(low, high + 1)
         steps = np.arange(low, high + 1)
         return self.start + low * self.interval, self._in_any_year(self.start + steps * self.interval)
+
+    def begin(self, start: float) -> float:
+        """Start of the first interval that `rows` gives for a span [s].
+
+        Parameters
+        ----------
+        start : float
+            Start of the span, seconds since 1970-01-01 UTC [s].
+        """
+        return self.start + self._low(start) * self.interval
+
+    def _low(self, start: float) -> int:
+        low = int(np.floor((start - self.start) / self.interval + 1e-9)) - _MARGIN
+        return low if self.periodic else max(low, 0)
 
     def _in_any_year(self, seconds: Array) -> Rows:
         """Row of the same local time in the stored year; 29 February takes the values of 28 February."""

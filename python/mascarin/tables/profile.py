@@ -34,11 +34,14 @@ class PiecewiseProfile:
         Length of a source interval [s].
     nodes : ndarray, shape (intervals, m + 1)
         Values at evenly spaced nodes of each interval, both ends included.
+    before : int
+        Intervals between `start` and the first one with nodes: a part of a profile has the bits of the whole.
     """
 
     start: float
     interval: float
     nodes: Array
+    before: int = 0
 
     def at(self, time: Array) -> Array:
         """Value at a time; at a shared edge that of the interval that ends there.
@@ -51,11 +54,11 @@ class PiecewiseProfile:
         count, pieces = self.nodes.shape[0], self.nodes.shape[1] - 1
         position = (np.asarray(time, dtype=np.float64) - self.start) / self.interval
         row = np.ceil(position - _TIME_TOLERANCE / self.interval).astype(np.int64) - 1
-        row = np.clip(row, 0, count - 1)
+        row = np.clip(row, self.before, self.before + count - 1)
         inner = np.clip(position - row, 0.0, 1.0) * pieces
         node = np.minimum(inner.astype(np.int64), pieces - 1)
         weight = inner - node
-        nodes, before = self.nodes.ravel(), row * (pieces + 1) + node
+        nodes, before = self.nodes.ravel(), (row - self.before) * (pieces + 1) + node
         return np.asarray((1.0 - weight) * nodes.take(before) + weight * nodes.take(before + 1))
 
     def means(self, edges: Array) -> Array:
@@ -73,7 +76,7 @@ class PiecewiseProfile:
         """
         count, pieces = self.nodes.shape[0], self.nodes.shape[1] - 1
         width = self.interval / pieces
-        inside = self.start + width * np.arange(count * pieces + 1)
+        inside = self.start + width * (self.before * pieces + np.arange(count * pieces + 1))
         inside = inside[(inside > edges[0]) & (inside < edges[-1])]
         cuts = np.sort(np.concatenate([edges, inside]), kind="stable")  # quick for two that are sorted
         # Each once; `numpy.unique` would import masked arrays.
@@ -96,15 +99,16 @@ def pieces_for(interval: float) -> int:
     return 2 * max(1, int(np.ceil(interval / (2.0 * _FINEST) - 1e-9)))
 
 
-def node_times(start: float, interval: float, count: int, pieces: int) -> Array:
-    """Times of all nodes.
+def node_times(start: float, interval: float, count: int, pieces: int, before: int = 0) -> Array:
+    """Times of all nodes, without those of some intervals at the start.
 
     Returns
     -------
     ndarray, shape (count, pieces + 1)
         Times, same zero as `start` [s].
     """
-    return start + interval * (np.arange(count)[:, None] + np.arange(pieces + 1)[None, :] / pieces)
+    rows = np.arange(before, before + count)
+    return start + interval * (rows[:, None] + np.arange(pieces + 1)[None, :] / pieces)
 
 
 def trapezoid_weights(pieces: int) -> Array:

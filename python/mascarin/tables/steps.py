@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from datetime import tzinfo
 from typing import Final
 
@@ -31,6 +32,24 @@ STAGES: Final[dict[str, tuple[tuple[float, ...], tuple[float, ...]]]] = {
 
 
 @dataclass(frozen=True)
+class PartOfPeriod:
+    """What steps that are a part of a period know of the whole.
+
+    Attributes
+    ----------
+    begin, end : float
+        Start of the first and end of the last step of the period, from its start. [s]
+    sums : dict
+        What is added up from the start of the period on, where the part before ended: whoever adds it up
+        knows the key. The parts of a period share it, and are taken in their order.
+    """
+
+    begin: float
+    end: float
+    sums: dict[tuple[object, ...], tuple[int, Array]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Steps:
     """Steps over a period, of equal length or parts of it.
 
@@ -46,6 +65,8 @@ class Steps:
         Times of the stages, from the start of the period. [s]
     weights : tuple of float
         Weights of the stages in the mean over a step. [-]
+    part : PartOfPeriod or None
+        The period, where these are not all of its steps: values have the same bits as those of all steps.
     """
 
     first: float
@@ -53,6 +74,42 @@ class Steps:
     edges: Array
     stage: Array
     weights: tuple[float, ...]
+    part: PartOfPeriod | None = None
+
+    @property
+    def begin(self) -> float:
+        """Start of the first step of the period, from its start. [s]"""
+        return float(self.edges[0]) if self.part is None else self.part.begin
+
+    @property
+    def opens(self) -> bool:
+        """Whether the period begins with these steps."""
+        return bool(self.edges[0] == self.begin)
+
+    @classmethod
+    def parts(
+        cls, zone: tzinfo, start: object, end: object, step_seconds: float, scheme: str, size: int
+    ) -> Iterator[Steps]:
+        """Steps from start to end, a part after the other; parameters and errors of `over`.
+
+        Parameters
+        ----------
+        size : int
+            Most steps of a part.
+
+        Yields
+        ------
+        Steps
+            A part. The one before has to be used, or not, when the next one is.
+        """
+        nodes, weights = _stages(scheme)
+        first, last = seconds_at(start, zone, "start"), seconds_at(end, zone, "end")
+        count = _count(first, last, step_seconds, len(nodes), size)
+        period = PartOfPeriod(0.0, step_seconds * count)
+        for row in range(0, count, size):
+            edges = step_seconds * np.arange(row, min(row + size, count) + 1)
+            stage = edges[:-1, None] + step_seconds * np.array(nodes)
+            yield cls(first, last, edges, stage, weights, period)
 
     @classmethod
     def over(
@@ -86,9 +143,7 @@ class Steps:
         ValueError
             Halved steps that do not fill the period.
         """
-        if scheme not in STAGES:
-            raise InputError(f"scheme: no scheme {scheme!r}. {did_you_mean(scheme, STAGES)}")
-        nodes, weights = STAGES[scheme]
+        nodes, weights = _stages(scheme)
         first = seconds_at(start, zone, "start")
         last = seconds_at(end, zone, "end")
         count = _count(first, last, step_seconds, len(nodes))
@@ -102,7 +157,14 @@ class Steps:
         return cls(first, last, edges, edges[:-1, None] + lengths[:, None] * np.array(nodes), weights)
 
 
-def _count(first: float, last: float, step: float, stages: int) -> int:
+def _stages(scheme: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    if scheme not in STAGES:
+        raise InputError(f"scheme: no scheme {scheme!r}. {did_you_mean(scheme, STAGES)}")
+    return STAGES[scheme]
+
+
+def _count(first: float, last: float, step: float, stages: int, most: int = MOST_STEPS) -> int:
+    """Number of steps, of which so many are made at a time."""
     if not step > 0.0:
         raise InputError(f"step: found {step!r} s, expected a positive length.")
     ratio = (last - first) / step
@@ -115,7 +177,7 @@ def _count(first: float, last: float, step: float, stages: int) -> int:
         )
     count = round(ratio)
     memory.require(
-        count * stages * BYTES,
+        min(count, most) * stages * BYTES,
         f"step: {count} steps of {step:.6g} s",
         "take a longer step or a shorter period",
     )

@@ -18,7 +18,8 @@ from mascarin.tables.record import Record
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import clock
 from mascarin.weather.derived.radiation import from_instants, from_means
-from mascarin.weather.derived.sun_position import Sun, sun_over
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.derived.sun_position import Sun, states_position, sun_over
 from mascarin.weather.records.channels import (
     BY_NAME,
     CHANNELS,
@@ -29,7 +30,7 @@ from mascarin.weather.records.channels import (
 )
 from mascarin.weather.records.record import WeatherRecord
 from mascarin.weather.records.site import SiteLike
-from mascarin.weather.records.window import window
+from mascarin.weather.records.window import window_of_steps
 
 
 def require_period(record: WeatherRecord, steps: Steps) -> None:
@@ -107,9 +108,10 @@ def forcing(
     _fill_at_place(out[..., : len(CHANNELS)], completed, site, steps)
     for column, name in enumerate(channels, start=len(CHANNELS)):
         record = record_of(source, measured, name)
-        record.grid.require(first, steps.last, f"{record.file}: {name}")
-        if limits is not None and name in limits:
-            require_range(record, name, limits[name], first, steps.last, UNITS.get(name, ""))
+        if steps.opens:
+            record.grid.require(first, steps.last, f"{record.file}: {name}")
+            if limits is not None and name in limits:
+                require_range(record, name, limits[name], first, steps.last, UNITS.get(name, ""))
         out[..., column] = column_values(record, name, steps)
     return out
 
@@ -126,7 +128,7 @@ def _fill_at_place(out: Array, completed: WeatherRecord, site: SiteLike, steps: 
         steps.weights,
         steps.edges.tobytes(),
     )
-    if _LAST and _LAST[0].record is completed and _LAST[0].key == key:
+    if steps.part is None and _LAST and _LAST[0].record is completed and _LAST[0].key == key:
         out[...] = _LAST[0].values
         return
     sun = sun_over_steps(completed, latitude, longitude, steps)
@@ -137,14 +139,19 @@ def _fill_at_place(out: Array, completed: WeatherRecord, site: SiteLike, steps: 
     for name in SOURCE_CHANNELS[:7]:
         out[..., CHANNELS.index(name)] = channel_values(completed, name, steps)
     fill_radiation(out, completed, sun, steps)
-    if out.nbytes <= _MOST_KEPT:
+    if steps.part is None and out.nbytes <= _MOST_KEPT:
         _LAST[:] = [_Kept(completed, key, out.copy())]
 
 
 def sun_over_steps(record: WeatherRecord, latitude: float, longitude: float, steps: Steps) -> Sun:
     """The sun over a period and what lies around it in a record. [deg]"""
-    reach = 5.0 * record.grid.interval + 3600.0
-    return sun_over(record, latitude, longitude, (steps.first - reach, steps.last + reach), steps.first)
+    reach, first = 5.0 * record.grid.interval + 3600.0, steps.first
+    span = (first - reach, steps.last + reach)
+    if steps.part is None or states_position(record):
+        return sun_over(record, latitude, longitude, span, first)
+    reach += _OVERLAP * record.grid.interval
+    part = (first + float(steps.edges[0]) - reach, first + float(steps.edges[-1]) + reach)
+    return SunPath.over(latitude, longitude, *span, first, part)
 
 
 @dataclass(frozen=True)
@@ -159,6 +166,8 @@ class _Kept:
 _LAST: Final[list[_Kept]] = []
 #: Steps whose sun is worked out together.
 _ROWS: Final = 2**15
+#: Intervals by which the values of two parts of a period overlap, at most.
+_OVERLAP: Final = 64
 #: A year in steps of 15 min takes 10 MB. [B]
 _MOST_KEPT: Final = 16 * 2**20
 
@@ -222,19 +231,26 @@ def column_means(record: Record, name: str, steps: Steps) -> Array:
     ndarray, shape (steps,)
         A mean is constant inside its interval; instants are joined by straight lines. [unit of the column]
     """
-    origin, edges = steps.first, steps.edges
-    start, values, kind = window(record, name, origin + edges[0], origin + edges[-1])
-    knots = start - origin + record.grid.interval * np.arange(len(values) + (kind == "mean"))
+    edges = steps.edges
+    start, before, values, kind = window_of_steps(record, name, steps)
+    knots = start + record.grid.interval * (before + np.arange(len(values) + (kind == "mean")))
     # Fine enough that the mean of straight lines is exact: the integral at every knot and edge.
-    nodes = np.union1d(knots, edges)
+    nodes: Array = np.union1d(knots, edges)
+    integral: Array = np.empty(0)
+    if steps.part is not None and not steps.opens:
+        # It goes on from where the part before ended.
+        nodes, integral = nodes[nodes >= edges[0]], steps.part.sums["mean", id(record), name, edges[0]][1]
     middle = 0.5 * (nodes[1:] + nodes[:-1])
     inside = (
         values[np.clip(np.searchsorted(knots, middle) - 1, 0, len(values) - 1)]
         if kind == "mean"
         else np.interp(middle, knots, values)
     )
-    integral = np.concatenate([[0.0], np.cumsum(inside * np.diff(nodes))])
-    return np.asarray(np.diff(np.interp(edges, nodes, integral)) / np.diff(edges))
+    integral = np.cumsum(np.concatenate([integral, inside * np.diff(nodes)]))
+    at_edges = np.interp(edges, nodes, np.concatenate([[0.0], integral]) if steps.opens else integral)
+    if steps.part is not None:
+        steps.part.sums["mean", id(record), name, edges[-1]] = (0, at_edges[-1:].copy())
+    return np.asarray(np.diff(at_edges) / np.diff(edges))
 
 
 def column_values(record: Record, name: str, steps: Steps) -> Array:
@@ -255,21 +271,39 @@ def column_values(record: Record, name: str, steps: Steps) -> Array:
         Instants are joined by straight lines; a mean is reconstructed, and over each step the weighted mean
         of the stages is that of the reconstruction. [unit of the column]
     """
-    origin, edges, stage, weights = steps.first, steps.edges, steps.stage, steps.weights
-    start, values, kind = window(record, name, origin + edges[0], origin + edges[-1])
-    start -= origin
+    edges, stage, weights = steps.edges, steps.stage, steps.weights
+    start, before, values, kind = window_of_steps(record, name, steps)
     interval = record.grid.interval
-    if kind == "instant":
-        knots = start + interval * np.arange(len(values))
-        if name == "wind_direction":
-            return np.asarray(np.interp(stage, knots, np.unwrap(values, period=360.0)) % 360.0)
-        return np.asarray(np.interp(stage, knots, values))
-    positive = not (record.columns[name] < 0.0).any()
     if name == "wind_direction":
-        values, positive = np.unwrap(values, period=360.0), False
+        values = _unwrapped(values, steps, before, id(record))
+    if kind == "instant":
+        knots = start + interval * np.arange(before, before + len(values))
+        result = np.asarray(np.interp(stage, knots, values))
+        return result % 360.0 if name == "wind_direction" else result
+    positive = name != "wind_direction" and not (record.columns[name] < 0.0).any()
     nodes = steady(values, pieces_for(interval), positive=positive)
-    result = _balanced(PiecewiseProfile(start, interval, nodes), edges, stage, weights, additive=not positive)
-    return result % 360.0 if name == "wind_direction" else result
+    profile = PiecewiseProfile(start, interval, nodes, before)
+    balanced = _balanced(profile, edges, stage, weights, additive=not positive)
+    return balanced % 360.0 if name == "wind_direction" else balanced
+
+
+def _unwrapped(directions: Array, steps: Steps, before: int, record: int) -> Array:
+    """Directions without jumps by whole turns, as `numpy.unwrap` adds up its corrections. [deg]"""
+    if steps.part is None:
+        return np.unwrap(directions, period=360.0)
+    change = np.diff(directions)
+    shorter = np.mod(change + 180.0, 360.0) - 180.0
+    shorter[(shorter == -180.0) & (change > 0.0)] = 180.0
+    turns = np.where(np.abs(change) < 180.0, 0.0, shorter - change)
+    first = before
+    turned: Array = np.zeros(1)
+    if not steps.opens:
+        first, turned = steps.part.sums["turns", record, steps.edges[0]]
+    # The part before overlaps with this one: from its turns at the first direction on.
+    turned = np.cumsum(np.concatenate([turned[before - first : before - first + 1], turns]))
+    last = max(len(turned) - _OVERLAP, 0)
+    steps.part.sums["turns", record, steps.edges[-1]] = (before + last, turned[last:].copy())
+    return np.asarray(directions + turned)
 
 
 def fill_radiation(out: Array, record: WeatherRecord, sun: Sun, steps: Steps) -> None:
@@ -286,17 +320,16 @@ def fill_radiation(out: Array, record: WeatherRecord, sun: Sun, steps: Steps) ->
     steps : Steps
         The period.
     """
-    origin, edges = steps.first, steps.edges
-    basis = record.radiation_basis
+    edges, basis = steps.edges, record.radiation_basis
     components = {"direct+diffuse": RADIATION[:2], "global+diffuse": RADIATION[1:], "all": RADIATION}[basis]
     irradiances: dict[str, Array] = {}
-    start, kind = 0.0, "mean"
+    start, before, kind = 0.0, 0, "mean"
     for name in components:
-        start, irradiances[name], kind = window(record, name, origin + edges[0], origin + edges[-1])
+        start, before, irradiances[name], kind = window_of_steps(record, name, steps)
     blank = np.zeros_like(irradiances["diffuse_horizontal"])
     direct, diffuse, total = (irradiances.get(name, blank) for name in RADIATION)
     make = from_means if kind == "mean" else from_instants
-    sky = make(sun, start - origin, record.grid.interval, direct, diffuse, total, basis)
+    sky = make(sun, start, record.grid.interval, direct, diffuse, total, basis, before)
     sunlit = out[..., CHANNELS.index("sun_up")] > 0.0
     for name in RADIATION:
         profile: PiecewiseProfile = getattr(sky, name)

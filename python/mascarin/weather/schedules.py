@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, tzinfo
 from typing import TYPE_CHECKING, Final, cast
@@ -12,7 +12,7 @@ import numpy as np
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Halvings
 from mascarin.tables.checks import require_range
-from mascarin.tables.record import Origin
+from mascarin.tables.record import Origin, Record
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import local_time
 from mascarin.weather.climate import Climate
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from mascarin.building.parts.air.schedule import Schedule
     from mascarin.building.soil.courses import SoilCourse
 
+#: Days whose pieces are made together.
+_DAYS: Final = 400
 # A step that ends at a switch ends before it. [s]
 _BEFORE: Final = 1e-3
 
@@ -128,23 +130,68 @@ def scheduled(
     """
     steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme, halvings)
     out = np.empty((*steps.stage.shape, len(schedules)))
+    Courses(climate, schedules, timezone, measurements).fill(out, steps)
+    return out
 
-    def values_of(name: str) -> Array:
-        course = schedules[name]
+
+class Courses:
+    """Schedules and other courses, whose values are asked for over a period or over its parts.
+
+    Parameters
+    ----------
+    climate, schedules, timezone, measurements
+        As in `scheduled`.
+    """
+
+    def __init__(
+        self,
+        climate: Climate,
+        schedules: Mapping[str, Schedule | ColumnCourse | SoilCourse],
+        timezone: tzinfo,
+        measurements: Measurements | None = None,
+    ) -> None:
+        self._climate, self._courses = climate, schedules
+        self._timezone, self._measurements = timezone, measurements
+        self._pieces: dict[str, StraightPieces] = {}
+        self._soil: dict[str, Callable[[Steps], Array]] = {}
+
+    def __len__(self) -> int:
+        return len(self._courses)
+
+    def fill(self, out: Array, steps: Steps) -> None:
+        """Write the values at the stages of steps.
+
+        Parameters
+        ----------
+        out : ndarray, shape (steps, stages, courses)
+            Changed in place. [unit of each course]
+        steps : Steps
+            The steps; those of one period, its parts in their order.
+
+        Raises
+        ------
+        InputError
+            A measured column is unknown, or a value in it is missing or impossible.
+        """
+        for column, name in enumerate(self._courses):
+            out[..., column] = self._values(name, steps)
+
+    def _values(self, name: str, steps: Steps) -> Array:
+        course = self._courses[name]
         if hasattr(course, "ladder"):
-            return of_soil(climate, cast("SoilCourse", course), steps)
+            if name not in self._soil:
+                self._soil[name] = of_soil(self._climate, cast("SoilCourse", course), steps)
+            return self._soil[name](steps)
         if not course.columns:
             # Only a schedule has no columns.
-            pieces = pieces_of(cast("Schedule", course), timezone, steps.first, steps.last)
-            means = course.kind != "temperature"
+            if name not in self._pieces:
+                schedule = cast("Schedule", course)
+                self._pieces[name] = pieces_of(schedule, self._timezone, steps.first, steps.last)
+            pieces, means = self._pieces[name], course.kind != "temperature"
             return pieces.means(steps.edges)[:, None] if means else pieces.before(steps.stage)
-        values = _measured(climate, measurements, name, course, steps)
+        values = _measured(self._climate, self._measurements, name, course, steps)
         fraction = getattr(course, "schedule", None)
-        return values if fraction is None else np.asarray(values * values_of(fraction))
-
-    for column, name in enumerate(schedules):
-        out[..., column] = values_of(name)
-    return out
+        return values if fraction is None else np.asarray(values * self._values(fraction, steps))
 
 
 def pieces_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -> StraightPieces:
@@ -166,19 +213,28 @@ def pieces_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -
     """
     day, end = (local_time(seconds, timezone).date() for seconds in (first, last))
     day, end = day - timedelta(days=1), end + timedelta(days=1)
-    starts: list[datetime] = []
-    values: list[tuple[float, float]] = []
+    knots: list[Array] = []
+    pairs: list[Array] = []
     while day <= end:
-        midnight = datetime(day.year, day.month, day.day)  # by the local clock
-        for minute, _, begin, finish in schedule.pieces(
-            day.weekday(), holiday=schedule.is_holiday(day), season=schedule.season(day)
-        ):
-            starts.append(midnight + timedelta(minutes=minute))
-            values.append((begin, finish))
-        day += timedelta(days=1)
-    knots = _instants([*starts, datetime(day.year, day.month, day.day)], timezone) - first
-    pairs = np.array(values)
-    # Where clocks go forward, the pieces in the skipped hour have no length.
+        starts: list[datetime] = []
+        values: list[tuple[float, float]] = []
+        # Some days at a time: a number in a list takes many times the memory of one in an array.
+        for _ in range(min(_DAYS, (end - day).days + 1)):
+            midnight = datetime(day.year, day.month, day.day)  # by the local clock
+            for minute, _, begin, finish in schedule.pieces(
+                day.weekday(), holiday=schedule.is_holiday(day), season=schedule.season(day)
+            ):
+                starts.append(midnight + timedelta(minutes=minute))
+                values.append((begin, finish))
+            day += timedelta(days=1)
+        knots.append(_instants(starts, timezone) - first)
+        pairs.append(np.array(values))
+    knots.append(_instants([datetime(day.year, day.month, day.day)], timezone) - first)
+    return _pieces_with_length(np.concatenate(knots), np.concatenate(pairs))
+
+
+def _pieces_with_length(knots: Array, pairs: Array) -> StraightPieces:
+    """Without pieces that have no length: where clocks go forward, those in the skipped hour."""
     real = np.diff(knots) > 0.0
     return StraightPieces(np.concatenate([knots[:-1][real], knots[-1:]]), pairs[real, 0], pairs[real, 1])
 
@@ -241,20 +297,20 @@ def _of_column(
         if not hasattr(course, "column"):  # no schedule
             raise
         raise InputError(f"schedules.{name}.column: {error}") from None
-    record.grid.require(steps.first, steps.last, f"{record.file}: {column}")
-    _require_unit(record.origins.get(column), course, column, f"{record.file}: {column}")
-    low, high = LIMITS_OF_COURSES[course.kind]
-    require_range(
-        record,
-        column,
-        (low / course.scale, high / course.scale),
-        steps.first,
-        steps.last,
-        UNITS.get(column, ""),
-    )
+    if steps.opens:
+        _require_usable(record, course, column, steps)
     if course.kind == "temperature":
         return column_values(record, column, steps)
     return column_means(record, column, steps)[:, None]
+
+
+def _require_usable(record: Record, course: Schedule | ColumnCourse, column: str, steps: Steps) -> None:
+    """Refuse a column that does not cover the period, has another unit, or an impossible value in it."""
+    record.grid.require(steps.first, steps.last, f"{record.file}: {column}")
+    _require_unit(record.origins.get(column), course, column, f"{record.file}: {column}")
+    low, high = LIMITS_OF_COURSES[course.kind]
+    limits = (low / course.scale, high / course.scale)
+    require_range(record, column, limits, steps.first, steps.last, UNITS.get(column, ""))
 
 
 def _require_unit(origin: Origin | None, course: Schedule | ColumnCourse, column: str, where: str) -> None:

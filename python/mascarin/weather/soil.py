@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -23,7 +24,7 @@ _HOUR: Final = 3600.0
 _YEAR: Final = 8760
 
 
-def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
+def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Callable[[Steps], Array]:
     """Heat into the innermost cell [W/m2], or the temperature behind the outermost one. [degC]
 
     Parameters
@@ -33,7 +34,12 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
     course : SoilCourse
         What is asked for.
     steps : Steps
-        The steps of the run.
+        The steps of the run, or the first of them.
+
+    Returns
+    -------
+    callable
+        Values of steps of the run, shape (steps, 1).
 
     Raises
     ------
@@ -41,7 +47,7 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
         The weather is shorter than a year, and nothing says what was before.
     """
     if course.kind == "temperature":
-        return np.full((len(steps.edges) - 1, 1), course.behind)
+        return lambda steps: np.full((len(steps.edges) - 1, 1), course.behind)
     from mascarin.building.soil.response import heat_of_outdoors
 
     hours, outdoors = _hourly(climate, steps, course.radiation)
@@ -60,8 +66,13 @@ def of_soil(climate: Climate, course: SoilCourse, steps: Steps) -> Array:
         before,
         _day_of_year(climate, steps.first + float(hours[0])),
     )
-    middles = 0.5 * (steps.edges[:-1] + steps.edges[1:])
-    return np.asarray(np.interp(middles, hours, heat[:, course.cell])[:, None])
+    into_cell = heat[:, course.cell].copy()
+
+    def values(steps: Steps) -> Array:
+        middles = 0.5 * (steps.edges[:-1] + steps.edges[1:])
+        return np.asarray(np.interp(middles, hours, into_cell)[:, None])
+
+    return values
 
 
 def _hourly(

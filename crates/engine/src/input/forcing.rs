@@ -121,3 +121,60 @@ impl<'a> Forcing<'a> {
         &self.values[start..start + self.channels]
     }
 }
+
+/// Gives the next block of steps of a forcing, in row-major order.
+type Next<'a> = dyn FnMut() -> Result<Vec<f64>, EngineError> + 'a;
+
+/// The forcing of a run in blocks of steps, of which one is needed at a time.
+pub struct ForcingBlocks<'a> {
+    first: Forcing<'a>,
+    steps: usize,
+    next: Box<Next<'a>>,
+}
+
+impl<'a> ForcingBlocks<'a> {
+    /// All steps in one block.
+    #[must_use]
+    pub fn one(forcing: Forcing<'a>) -> Self {
+        Self::new(forcing, forcing.steps(), || Ok(Vec::new()))
+    }
+
+    /// From the first block, the number of steps of all blocks, and what gives the others one after the other.
+    #[must_use]
+    pub fn new(
+        first: Forcing<'a>,
+        steps: usize,
+        next: impl FnMut() -> Result<Vec<f64>, EngineError> + 'a,
+    ) -> Self {
+        Self { first, steps, next: Box::new(next) }
+    }
+
+    /// The first block.
+    #[must_use]
+    pub fn first(&self) -> Forcing<'a> {
+        self.first
+    }
+
+    /// Number of steps of all blocks.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// The block after some steps.
+    ///
+    /// # Errors
+    /// [`EngineError::Input`]: it has no whole steps, or more than are left; and those of what gives it.
+    pub(crate) fn after(&mut self, done: usize) -> Result<Vec<f64>, EngineError> {
+        let (stages, channels) = (self.first.stages, self.first.channels);
+        let values = (self.next)()?;
+        let steps = Forcing::new(&values, stages, channels)?.steps();
+        if steps == 0 || steps > self.steps - done {
+            let left = self.steps - done;
+            return Err(EngineError::Input(format!(
+                "a block of the forcing has {steps} steps, expected 1 to {left}"
+            )));
+        }
+        Ok(values)
+    }
+}

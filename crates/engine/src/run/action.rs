@@ -1,5 +1,7 @@
 //! The actions of a run: each changes the state.
 
+use core::ops::Range;
+
 use crate::balance::energy_balance::EnergyBalance;
 use crate::error::EngineError;
 use crate::number::real::Real;
@@ -55,7 +57,14 @@ impl Action {
 
     /// The actions of a run of some steps, without those of its warm-up.
     pub(crate) fn all(steps: usize, options: &Options) -> impl Iterator<Item = Self> + use<> {
-        [Self::Balance, Self::first(options)].into_iter().chain((1..steps).map(Self::Step))
+        Self::over(0..steps, options)
+    }
+
+    /// The actions of a part of a run.
+    pub(crate) fn over(steps: Range<usize>, options: &Options) -> impl Iterator<Item = Self> + use<> {
+        let begins = if steps.start == 0 { 2 } else { 0 };
+        let begin = [Self::Balance, Self::first(options)].into_iter().take(begins);
+        begin.chain((steps.start.max(1)..steps.end).map(Self::Step))
     }
 
     /// Index of the step that it takes; that of the first one where it takes none.
@@ -140,6 +149,8 @@ mod tests {
                 "{steps}, {record_from}, {record_every}"
             );
             assert_eq!(Action::WarmUp(record_from).record(&options), None);
+            let halves = Action::over(0..steps / 2, &options).chain(Action::over(steps / 2..steps, &options));
+            assert!(steps < 2 || halves.eq(Action::all(steps, &options)), "{steps}");
         }
     }
 

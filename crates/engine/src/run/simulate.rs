@@ -90,54 +90,99 @@ pub(super) fn prepare<S: Real>(stepper: &mut Stepper<'_, S>, options: &Options) 
     }
 }
 
+/// A run on its way: its state, and what is added up and judged along it.
+pub(super) struct Course<'a, S: Real> {
+    pub(super) stepper: Stepper<'a, S>,
+    pub(super) state: State<S>,
+    cycles: usize,
+    warm_up_change: S,
+    energy_balance: EnergyBalance<S>,
+    limits: PhysicalLimits<S>,
+    validity: Validity,
+}
+
+impl<'a, S: Real> Course<'a, S> {
+    /// Brings a stepper to where a run starts; `observe` is called with each action of the warm-up and the state after it.
+    pub(super) fn start(
+        mut stepper: Stepper<'a, S>,
+        weather: &Weather<'_>,
+        options: &Options,
+        control: &'a RunControl,
+        observe: &mut impl FnMut(&Stepper<'a, S>, &State<S>, Action) -> Result<(), EngineError>,
+    ) -> Result<Self, EngineError> {
+        stepper.set_control(control);
+        prepare(&mut stepper, options);
+        let mut state = stepper.begin(&options.initial, weather.row(0, 0));
+        let (cycles, warm_up_change) = warm_up(&mut stepper, &mut state, weather, options, control, observe)?;
+        let limits = PhysicalLimits::new(&state, options.scheme);
+        let validity = Validity::new(&stepper.model);
+        let energy_balance = EnergyBalance::new();
+        Ok(Self { stepper, state, cycles, warm_up_change, energy_balance, limits, validity })
+    }
+
+    /// Carries an action out, and judges the state after it.
+    #[inline(always)]
+    pub(super) fn take(
+        &mut self,
+        action: Action,
+        weather: &Weather<'_>,
+        options: &Options,
+        control: &RunControl,
+    ) -> Result<(), EngineError> {
+        control.check()?;
+        let Self { stepper, state, energy_balance, limits, validity, .. } = self;
+        let length = options.length(action.step());
+        action.take(stepper, state, weather, length, energy_balance)?;
+        control.count_step();
+        let rows = action.weather_rows(weather, options.scheme);
+        limits.judge(stepper, state, rows, (action, action.step()))?;
+        if action != Action::Balance {
+            validity.judge(stepper, state, action.step());
+        }
+        Ok(())
+    }
+
+    /// The run after some steps.
+    pub(super) fn end(self, records: Vec<S>, steps: usize) -> Run<S> {
+        let Self { stepper, state, cycles, warm_up_change, mut energy_balance, limits, validity } = self;
+        energy_balance.set_content(state.heat_content(&stepper.model), steps);
+        Run {
+            records,
+            energy_balance,
+            state,
+            cycles,
+            warm_up_change,
+            counters: stepper.counters(),
+            failed: stepper.failed(),
+            outside: limits.excess,
+            outlier: limits.outlier,
+            out_of_range: validity.found().cloned().collect(),
+            beyond_validity: validity.steps(),
+        }
+    }
+}
+
 /// Runs a stepper; `observe` is called with each action and the state after it.
 pub(crate) fn simulate_observed<'a, S: Real>(
-    mut stepper: Stepper<'a, S>,
+    stepper: Stepper<'a, S>,
     weather: &Weather<'_>,
     options: &Options,
     control: &'a RunControl,
     mut observe: impl FnMut(&Stepper<'a, S>, &State<S>, Action) -> Result<(), EngineError>,
 ) -> Result<Run<S>, EngineError> {
-    stepper.set_control(control);
-    prepare(&mut stepper, options);
-    let mut state = stepper.begin(&options.initial, weather.row(0, 0));
-    let (cycles, warm_up_change) =
-        warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
+    let mut course = Course::start(stepper, weather, options, control, &mut observe)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.outputs.len());
     let mut row = RecordRow::new();
-    let mut energy_balance = EnergyBalance::new();
-    let mut limits = PhysicalLimits::new(&state, options.scheme);
-    let mut validity = Validity::new(&stepper.model);
     for action in Action::all(weather.steps(), options) {
-        control.check()?;
-        let length = options.length(action.step());
-        action.take(&mut stepper, &mut state, weather, length, &mut energy_balance)?;
-        control.count_step();
-        let rows = action.weather_rows(weather, options.scheme);
-        limits.judge(&mut stepper, &state, rows, (action, action.step()))?;
-        if action != Action::Balance {
-            validity.judge(&stepper, &state, action.step());
-        }
+        course.take(action, weather, options, control)?;
+        let Course { stepper, state, .. } = &mut course;
         let of_row = (action, options, &options.outputs[..]);
-        if row.add(of_row, (&stepper.readings(), &state), &mut records) {
-            judge_records(&mut stepper, &options.outputs, &records, action.step())?;
+        if row.add(of_row, (&stepper.readings(), state), &mut records) {
+            judge_records(stepper, &options.outputs, &records, action.step())?;
         }
-        observe(&stepper, &state, action)?;
+        observe(stepper, state, action)?;
     }
-    energy_balance.set_content(state.heat_content(&stepper.model), weather.steps());
-    Ok(Run {
-        records,
-        energy_balance,
-        state,
-        cycles,
-        warm_up_change,
-        counters: stepper.counters(),
-        failed: stepper.failed(),
-        outside: limits.excess,
-        outlier: limits.outlier,
-        out_of_range: validity.found().cloned().collect(),
-        beyond_validity: validity.steps(),
-    })
+    Ok(course.end(records, weather.steps()))
 }
 
 /// Judges the last row of some records, see [`physical_limits`](crate::run::physical_limits).

@@ -110,6 +110,8 @@ impl<'a> Instant<'a> {
 pub struct Weather<'a> {
     plan: &'a Plan,
     forcing: Forcing<'a>,
+    /// Step of the run that the forcing begins with.
+    first: usize,
     /// Terms of the wind that the laws of convection depend on.
     terms: WindTerms,
     /// Whether a ground temperature depends on the day of the year.
@@ -135,6 +137,12 @@ impl<'a> Weather<'a> {
         Self::keeping(plan, forcing, kept)
     }
 
+    /// The weather of a part of a run that begins with a step; no stage is kept.
+    #[must_use]
+    pub(crate) fn from_step(plan: &'a Plan, forcing: &Forcing<'a>, first: usize) -> Self {
+        Self { first, ..Self::keeping(plan, forcing, 0) }
+    }
+
     /// The weather of another forcing for the same plan, of which no stage is kept.
     #[must_use]
     pub(crate) fn of<'f>(&self, forcing: &Forcing<'f>) -> Weather<'f>
@@ -142,7 +150,7 @@ impl<'a> Weather<'a> {
         'a: 'f,
     {
         let Self { plan, terms, ground, .. } = *self;
-        Weather { plan, forcing: *forcing, terms, ground, stages: Vec::new(), vapour: Vec::new() }
+        Weather { plan, forcing: *forcing, first: 0, terms, ground, stages: Vec::new(), vapour: Vec::new() }
     }
 
     fn keeping(plan: &'a Plan, forcing: &Forcing<'a>, steps: usize) -> Self {
@@ -155,7 +163,7 @@ impl<'a> Weather<'a> {
             .any(|facing| matches!(facing, Facing::Imposed { .. }));
         let stages = (0..steps * forcing.stages()).map(|_| OnceLock::new()).collect();
         let vapour = if plan.humidity.is_some() { vapour_pressures(forcing) } else { Vec::new() };
-        Self { plan, forcing: *forcing, terms, ground, stages, vapour }
+        Self { plan, forcing: *forcing, first: 0, terms, ground, stages, vapour }
     }
 
     /// Memory of a stage that is kept [B].
@@ -165,8 +173,8 @@ impl<'a> Weather<'a> {
     }
 
     fn evaluate(&self, step: usize, stage: usize) -> Instant<'a> {
-        let row = self.forcing.at(step, stage);
-        let vapour = match self.vapour.get(step * self.forcing.stages() + stage) {
+        let row = self.row(step, stage);
+        let vapour = match self.vapour.get((step - self.first) * self.forcing.stages() + stage) {
             Some(&known) => known,
             None if self.plan.humidity.is_some() => saturation_pressure(row[channel::DEW_POINT]),
             None => 0.0,
@@ -180,16 +188,16 @@ impl<'a> Weather<'a> {
         self.forcing.steps()
     }
 
-    /// All forcing channels at a stage of a step.
+    /// All forcing channels at a stage of a step of the run.
     #[must_use]
     pub fn row(&self, step: usize, stage: usize) -> &'a [f64] {
-        self.forcing.at(step, stage)
+        self.forcing.at(step - self.first, stage)
     }
 
-    /// The weather at a stage of a step.
+    /// The weather at a stage of a step of the run.
     #[must_use]
     pub fn at(&self, step: usize, stage: usize) -> Cow<'_, Instant<'a>> {
-        match self.stages.get(step * self.forcing.stages() + stage) {
+        match self.stages.get((step - self.first) * self.forcing.stages() + stage) {
             Some(kept) => Cow::Borrowed(kept.get_or_init(|| self.evaluate(step, stage))),
             None => Cow::Owned(self.evaluate(step, stage)),
         }

@@ -4,10 +4,10 @@ use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_w
 use crate::common::{ALL_SCHEMES, forcing, options, run, values, warmup};
 use mascarin_engine::RunControl;
 use mascarin_engine::error::EngineError;
-use mascarin_engine::forcing::Forcing;
+use mascarin_engine::forcing::{Forcing, ForcingBlocks};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::outputs::Output;
-use mascarin_engine::run::{Options, simulate_in_blocks};
+use mascarin_engine::run::{Options, Warmup, simulate_in_blocks};
 
 const STEP: f64 = 900.0;
 const STEPS: usize = 96;
@@ -32,10 +32,18 @@ fn blocks_are_the_records_of_a_run() {
             let whole = run(&plan, &weather, &options);
             let mut blocks: Vec<Vec<f64>> = Vec::new();
             let watch = RunControl::default();
-            let streamed = simulate_in_blocks(&plan, &numbers, &drive, &options, &watch, rows, |block| {
-                blocks.push(block);
-                Ok(())
-            })
+            let streamed = simulate_in_blocks(
+                &plan,
+                &numbers,
+                &mut ForcingBlocks::one(drive),
+                &options,
+                &watch,
+                rows,
+                |block| {
+                    blocks.push(block);
+                    Ok(())
+                },
+            )
             .unwrap();
             let total = options.rows(STEPS);
             let expected = total.div_ceil(rows.min(total));
@@ -51,6 +59,64 @@ fn blocks_are_the_records_of_a_run() {
     }
 }
 
+/// The forcing in blocks of steps gives the bits of all steps, with a repeated first period in the first block.
+#[test]
+fn a_forcing_in_blocks_gives_the_bits_of_one() {
+    for scheme in ALL_SCHEMES {
+        let plan = Plan::new(conditioned(0.04)).unwrap();
+        let weather = forcing(&plan, scheme, STEPS, STEP, conditioned_weather);
+        let (numbers, stages) = (values(&plan), scheme.weights().len());
+        let whole_warmup = Some(Warmup { steps: 24, ..warmup(STEP) });
+        for (warmup, lengths) in [(None, vec![1; STEPS]), (whole_warmup, vec![24, 40, 1, 31])] {
+            let options = Options { warmup, ..options(scheme, STEP, outputs()) };
+            let whole = run(&plan, &weather, &options);
+            let step = stages * plan.n_channels();
+            let mut parts = weather.chunks(step).map(<[f64]>::to_vec);
+            let mut blocks =
+                lengths.into_iter().map(move |steps| parts.by_ref().take(steps).flatten().collect());
+            let first: Vec<f64> = blocks.next().unwrap();
+            let first = Forcing::new(&first, stages, plan.n_channels()).unwrap();
+            let mut drive = ForcingBlocks::new(first, STEPS, || Ok(blocks.next().unwrap()));
+            let (mut records, watch) = (Vec::new(), RunControl::default());
+            let run = simulate_in_blocks(&plan, &numbers, &mut drive, &options, &watch, 7, |block| {
+                records.extend(block);
+                Ok(())
+            })
+            .unwrap();
+            let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&records), bits(&whole.records));
+            assert_eq!(run.energy_balance.closure().to_bits(), whole.energy_balance.closure().to_bits());
+            assert_eq!((run.cycles, run.outside.to_bits()), (whole.cycles, whole.outside.to_bits()));
+        }
+    }
+}
+
+/// A first block that is shorter than the repeated period, a block without steps, and one with more than are left.
+#[test]
+fn blocks_that_do_not_fit_are_refused() {
+    let plan = Plan::new(conditioned(0.04)).unwrap();
+    let scheme = ALL_SCHEMES[0];
+    let weather = forcing(&plan, scheme, STEPS, STEP, conditioned_weather);
+    let (numbers, stages) = (values(&plan), scheme.weights().len());
+    let row = stages * plan.n_channels();
+    for (repeated, first, next, words) in [
+        (12, 10, 86, "the repeated first period is longer than the run"),
+        (8, 10, 0, "has 0 steps, expected 1 to 86"),
+        (8, 10, 87, "has 87 steps, expected 1 to 86"),
+        (8, 96, 0, "has 96 steps of 95"),
+    ] {
+        let warmup = Some(Warmup { steps: repeated, ..warmup(STEP) });
+        let options = Options { warmup, ..options(scheme, STEP, outputs()) };
+        let block = Forcing::new(&weather[..first * row], stages, plan.n_channels()).unwrap();
+        let steps = if next == 0 && first == STEPS { STEPS - 1 } else { STEPS };
+        let mut drive = ForcingBlocks::new(block, steps, || Ok(weather[..next * row].to_vec()));
+        let watch = RunControl::default();
+        let ended = simulate_in_blocks(&plan, &numbers, &mut drive, &options, &watch, 7, |_| Ok(()));
+        let error = ended.unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
 /// A block that is not taken ends the run.
 #[test]
 fn a_refused_block_ends_the_run() {
@@ -60,10 +126,11 @@ fn a_refused_block_ends_the_run() {
     let (numbers, stages) = (values(&plan), options.scheme.weights().len());
     let drive = Forcing::new(&weather, stages, plan.n_channels()).unwrap();
     let (watch, mut taken) = (RunControl::default(), 0);
-    let ended = simulate_in_blocks(&plan, &numbers, &drive, &options, &watch, 10, |_| {
-        taken += 1;
-        if taken < 3 { Ok(()) } else { Err(EngineError::Interrupted) }
-    });
+    let ended =
+        simulate_in_blocks(&plan, &numbers, &mut ForcingBlocks::one(drive), &options, &watch, 10, |_| {
+            taken += 1;
+            if taken < 3 { Ok(()) } else { Err(EngineError::Interrupted) }
+        });
     assert!(matches!(ended, Err(EngineError::Interrupted)));
     assert_eq!(taken, 3);
 }

@@ -7,18 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.weather.records.channels import CHANNELS
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from mascarin.building import Building
     from mascarin.weather import Climate
 
-    Array = npt.NDArray[np.float64]
 
-
-def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
+def require_wind(building: Building, climate: Climate, *, calm: bool) -> None:
     """Refuse a climate without wind where wind drives air through vents; a measured calm is no such climate.
 
     Parameters
@@ -27,8 +22,8 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
         The building.
     climate : Climate
         Its weather.
-    forcing : ndarray, shape (steps, stages, channels)
-        What acts on the building. [unit of each]
+    calm : bool
+        Whether the wind has no speed in any step of the run.
 
     Raises
     ------
@@ -39,7 +34,6 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
     directed = [name for name, vent in building.vents.items() if vent.directed]
     record = climate.record
     speeds = record.columns.get("wind_speed")
-    calm = not forcing[..., list(CHANNELS).index("wind_speed")].any()
     still = speeds is None or not np.nan_to_num(speeds).any()
     if still and record.measured("wind_speed"):
         return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from functools import cached_property, partial
@@ -20,6 +20,7 @@ from mascarin.simulation.preparation.options import require_precision
 from mascarin.simulation.preparation.run_results import EnsembleRun, Failure, Trajectory
 from mascarin.simulation.records.blocks import InMemory, rows_of
 from mascarin.simulation.records.recorded_outputs import Readings
+from mascarin.tables.forcing_blocks import STEPS, ForcingBlocks
 from mascarin.tables.timezones import parse_timezone
 
 if TYPE_CHECKING:
@@ -48,8 +49,8 @@ class CompiledRun:
     ----------
     description : str
         The building as the engine reads it, JSON.
-    forcing : ndarray, shape (steps, stages, channels)
-        Weather, measured boundaries and schedules. [unit of each channel]
+    forcing_blocks : ForcingBlocks
+        Weather, measured boundaries and schedules of all steps. [unit of each channel]
     paths : tuple of str, length P
         Path of each parameter.
     values : ndarray, shape (P,)
@@ -78,7 +79,7 @@ class CompiledRun:
     """
 
     description: str
-    forcing: Array
+    forcing_blocks: ForcingBlocks
     paths: tuple[str, ...]
     values: Array
     settings: Mapping[str, Any]
@@ -95,11 +96,25 @@ class CompiledRun:
     def __getstate__(self) -> dict[str, Any]:
         return {key: value for key, value in self.__dict__.items() if key not in ("plan", "edges")}
 
+    @property
+    def forcing(self) -> Array:
+        """The forcing of all steps, shape (steps, stages, channels); it stays in memory."""
+        return self.forcing_blocks.whole
+
     @cached_property
     def edges(self) -> Array:
         """Ends of the steps, from the start, shape (steps + 1,). [s]"""
-        halvings = np.array(self.settings.get("halvings", [0] * len(self.forcing)), dtype=np.float64)
+        halvings = np.array(self.settings.get("halvings", np.zeros(self.steps)), dtype=np.float64)
         return np.concatenate([[0.0], np.cumsum(self.settings["dt"] * np.exp2(-halvings))])
+
+    @property
+    def steps(self) -> int:
+        """Number of steps."""
+        return len(self.forcing_blocks)
+
+    def begin_of(self, step: int) -> float:
+        """Start of a step, by its number from 0, since the start of the run. [s]"""
+        return float(self.edges[step] if "halvings" in self.settings else self.settings["dt"] * step)
 
     @property
     def record_ends(self) -> npt.NDArray[np.int64]:
@@ -111,7 +126,7 @@ class CompiledRun:
     @property
     def intervals(self) -> int:
         """Record intervals: steps, where these are of one length."""
-        return round(float(self.edges[-1] / self.settings["dt"]))
+        return round(self.begin_of(self.steps) / float(self.settings["dt"]))
 
     @cached_property
     def hash(self) -> str:
@@ -206,19 +221,23 @@ class CompiledRun:
         SolverError
             A step or the repeated first period did not converge.
         """
-        recorded, forcing = readings or self.readings, self.forcing_at(vector)
+        recorded, blocks = readings or self.readings, self._blocks(vector, keeps_steps=keeps_rows)
         with translated(self.dated):
             if progress is not None:
-                progress(0, len(self.forcing))  # the time left counts from here
+                progress(0, self.steps)  # the time left counts from here
+            rows_at_once = rows_of(len(recorded.columns), keeps_rows=keeps_rows)
             raw: dict[str, Any] = self.plan.simulate_into(
-                vector,
-                forcing,
-                self.options(recorded),
-                rows_of(len(recorded.columns), keeps_rows=keeps_rows),
-                lambda rows: take(recorded.values(rows)),
-                _of_total(progress, len(self.forcing)),
-            )
+                vector, next(blocks), self.options(recorded), rows_at_once,
+                lambda rows: take(recorded.values(rows)), _of_total(progress, self.steps), self.steps,
+                lambda: next(blocks, None),
+            )  # fmt: skip
         return raw
+
+    def _blocks(self, vector: Array, *, keeps_steps: bool) -> Iterator[Array]:
+        """The forcing for a parameter vector in blocks of steps, the first with the repeated first period."""
+        if self.inputs is not None or self.settings["warmup_steps"] > STEPS:
+            return iter([self.forcing_at(vector)])
+        return self.forcing_blocks.blocks(keeps_steps=keeps_steps)
 
     def ensemble(
         self,
@@ -257,7 +276,7 @@ class CompiledRun:
         options = self.options(None, record_from, record_every)
         rows = self._rows(record_from, record_every)
         # Weather, sun and shadows of each stage are kept for all members.
-        stages = float(np.prod(self.forcing.shape[:2])) * self.plan.stage_bytes
+        stages = float(np.prod(self.forcing_blocks.shape[:2])) * self.plan.stage_bytes
         self._require_room(len(vectors), rows, f"{len(vectors)} members", "run fewer at a time", stages)
         if self.inputs is not None and (vectors[:, self.inputs.positions] != self.inputs.base).any():
             return self._by_weather(self.inputs, vectors, record_from, record_every, precision, progress)
@@ -283,7 +302,7 @@ class CompiledRun:
         judged = np.empty((3, count))
         failures: list[Failure] = []
         for rows, vector in inputs.groups(vectors):
-            alone = replace(self, forcing=self.forcing_at(vector), inputs=None)
+            alone = replace(self, forcing_blocks=ForcingBlocks.of(self.forcing_at(vector)), inputs=None)
             part = alone.ensemble(
                 np.ascontiguousarray(vectors[rows]),
                 record_from=record_from, record_every=record_every, precision=precision,
@@ -427,17 +446,11 @@ class CompiledRun:
         )
 
     def dated(self, message: str) -> str:
-        """Add the local time to a message of the engine that names a step.
-
-        Parameters
-        ----------
-        message : str
-            The message.
-        """
+        """Add the local time to a message of the engine that names a step."""
 
         def stamped(match: re.Match[str]) -> str:
-            step = min(int(match[1]), len(self.forcing) - 1)
-            begin = datetime.fromtimestamp(0, UTC) + timedelta(seconds=self.start + float(self.edges[step]))
+            step = min(int(match[1]), self.steps - 1)
+            begin = datetime.fromtimestamp(0, UTC) + timedelta(seconds=self.start + self.begin_of(step))
             local = begin.astimezone(parse_timezone(self.timezone))
             return f"step {step} from {local:%Y-%m-%d %H:%M:%S}"
 
@@ -470,7 +483,7 @@ class CompiledRun:
         """
         return cls(
             description=header["description"],
-            forcing=forcing,
+            forcing_blocks=ForcingBlocks.of(forcing),
             paths=tuple(header["paths"]),
             values=values,
             settings=header["settings"],

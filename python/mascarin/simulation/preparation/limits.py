@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building, Parameter
     from mascarin.simulation.records.times import Times
+    from mascarin.tables.forcing_blocks import ForcingBlocks
 
     Array = npt.NDArray[np.float64]
 
@@ -98,12 +99,12 @@ def require_scheme(building: Building, scheme: str) -> None:
 def require_set_points_apart(
     building: Building,
     vectors: Array,
-    forcing: Array,
+    forcing: ForcingBlocks,
     *,
     positions: Mapping[str, int],
     channels: Sequence[str],
     times: Times,
-    edges: Array,
+    begin_of: Callable[[int], float],
 ) -> None:
     """Refuse heating above cooling, and humidifying by a schedule or a column above drying.
 
@@ -113,7 +114,7 @@ def require_set_points_apart(
         The building.
     vectors : ndarray, shape (M, P)
         Parameter vectors. [unit of each]
-    forcing : ndarray, shape (steps, stages, channels)
+    forcing : ForcingBlocks
         What acts on the building, schedules included. [unit of each]
     positions : mapping of str to int
         Position of each parameter in a vector.
@@ -121,8 +122,8 @@ def require_set_points_apart(
         Channels of the forcing after those of the climate.
     times : Times
         Times of the records.
-    edges : ndarray, shape (steps + 1,)
-        Ends of the steps, from the start. [s]
+    begin_of : callable
+        Start of a step, from the start of the run. [s]
 
     Raises
     ------
@@ -135,7 +136,7 @@ def require_set_points_apart(
         if course is None:
             return vectors[:, [positions[path]]]
         channel = len(CHANNELS) + list(channels).index(f"schedule {course}")
-        return forcing[None, :, -1, channel]
+        return forcing.ends(channel)[None, :]
 
     for pair in set_point_pairs(building):
         (low, high) = (set_point(path, course) for path, course in pair.points)
@@ -144,7 +145,7 @@ def require_set_points_apart(
             continue
         member, step = crossing
         shape = (len(vectors), len(forcing))
-        when = local_time(times.first + float(edges[step]), times.zone)
+        when = local_time(times.first + begin_of(step), times.zone)
         first, second = (float(np.broadcast_to(x, shape)[member, step]) for x in (low, high))
         raise InputError(
             f"{pair.where}: found {pair.low} to {first:g}{pair.unit} above {pair.high} to "

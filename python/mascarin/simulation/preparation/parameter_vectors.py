@@ -308,8 +308,8 @@ class VectorRuns:
         """Refuse parameter vectors of the wrong length, or with a value that its parameter cannot have."""
         self._limits.require(vectors)
         require_set_points_apart(
-            self.building, vectors, self.compiled.forcing, positions=self._positions,
-            channels=self.channels, times=self.times, edges=self.compiled.edges,
+            self.building, vectors, self.compiled.forcing_blocks, positions=self._positions,
+            channels=self.channels, times=self.times, begin_of=self.compiled.begin_of,
         )  # fmt: skip
         require_laws(self.building, vectors, positions=self._positions)
         if self.building.controls:

@@ -24,10 +24,11 @@ from mascarin.simulation.preparation import step_sequence
 from mascarin.simulation.preparation.initial import MeasuredStart, resolved
 from mascarin.simulation.preparation.initial import read as read_initial
 from mascarin.simulation.preparation.initial_state import Ambient, GivenStart
-from mascarin.simulation.preparation.limits import require_scheme
+from mascarin.simulation.preparation.limits import require_scheme, set_point_pairs
 from mascarin.simulation.preparation.sky import with_sky_of
 from mascarin.simulation.preparation.weather_inputs import with_weather_inputs
 from mascarin.simulation.records.times import Times
+from mascarin.tables.forcing_blocks import SMALL, STEPS, ForcingBlocks
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import stamps_of
 from mascarin.tables.timezones import seconds_at, with_year
@@ -35,12 +36,14 @@ from mascarin.weather import (
     CHANNELS,
     COEFFICIENTS,
     IRRADIANCES,
+    STAGES,
     TEMPERATURES,
     Climate,
     Measurements,
     parse_timezone,
-    scheduled,
 )
+from mascarin.weather.forcing_source import ForcingSource, in_blocks
+from mascarin.weather.schedules import Courses
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -223,8 +226,13 @@ def forcing_of(
     scheme: Scheme,
     measurements: Measurements | None,
     halvings: Halvings | None = None,
-) -> tuple[Array, WeatherInputs | None]:
+    divided: bool = True,
+) -> tuple[ForcingBlocks, WeatherInputs | None]:
     """Climate, measured columns and schedules at every stage, and what of the weather is a parameter.
+
+    A long forcing is looked at in blocks of steps, and worked out again where it is needed, unless it is not
+    to be `divided`, or something needs all steps at once: chosen steps, errors of the weather as parameters,
+    a stated position of the sun.
 
     Raises
     ------
@@ -235,68 +243,81 @@ def forcing_of(
     names = description.schedules
     # Radiation whose clock the building corrects is compared with the sun when it is corrected.
     unchecked = climate if building.weather is None else Climate(replace(climate.record, check_sun=False))
-    columns = description.channels[: len(description.channels) - len(names)]
-    weather = unchecked.forcing(
+    timezone = parse_timezone(building.site.timezone)
+    source = ForcingSource(
+        unchecked,
         building.site,
-        times.start,
-        times.end,
-        times.step,
-        scheme,
-        columns,
+        description.channels[: len(description.channels) - len(names)],
+        Courses(climate, courses(building) if names else {}, timezone, measurements),
         measurements,
-        limits=limits_of_columns(building),
-        further=len(names),
-        halvings=halvings,
+        limits_of_columns(building),
     )
-    forcing = np.asarray(weather, dtype=np.float64)
-    if names:
-        forcing[..., -len(names) :] = scheduled(
-            climate,
-            courses(building),
-            parse_timezone(building.site.timezone),
-            times.start,
-            times.end,
-            times.step,
-            scheme,
-            measurements,
-            halvings,
-        )
-    _require_numbers(forcing, description.channels, building)
-    steps = Steps.over(times.zone, times.start, times.end, times.step, scheme, halvings)
-    begins = np.asarray(times.first + steps.edges, dtype=np.float64)
-    require_balanced_flows(building, forcing, description.channels, begins, times.zone)
-    require_wind(building, climate, forcing)
-    return with_weather_inputs(
-        building,
-        climate,
-        description,
-        forcing,
-        times=times,
-        scheme=scheme,
-        measurements=measurements,
-        halvings=halvings,
-    )
+    check = _ForcingCheck(building, climate, description.channels, times)
+    in_period = (times.zone, times.start, times.end, times.step, scheme)
+    stages = len(STAGES[scheme][0]) if scheme in STAGES else 0
+    shape = (round((times.last - times.first) / times.step), stages, source.channels)
+    small = not divided or 8 * math.prod(shape) <= SMALL
+    if small or halvings is not None or building.weather is not None or not source.divisible:
+        steps = Steps.over(*in_period, halvings)
+        forcing = source.at(steps)
+        check.require(forcing, steps)
+        check.require_wind()
+        corrected, inputs = with_weather_inputs(
+            building, climate, description, forcing,
+            times=times, scheme=scheme, measurements=measurements, halvings=halvings,
+        )  # fmt: skip
+        return ForcingBlocks.of(corrected), inputs
+    parts = partial(Steps.parts, *in_period, STEPS)
+    blocks = in_blocks(source, parts, check.require, shape, _set_points(building, description.channels))
+    check.require_wind()
+    return blocks, None
+
+
+def _set_points(building: Building, channels: Sequence[str]) -> set[int]:
+    """Channels with set points, which are compared with each other before each run."""
+    names = {course for pair in set_point_pairs(building) for _, course in pair.points if course is not None}
+    return {len(CHANNELS) + list(channels).index(f"schedule {name}") for name in names}
+
+
+class _ForcingCheck:
+    """What a building needs of its forcing, looked at in blocks of steps."""
+
+    def __init__(self, building: Building, climate: Climate, channels: Sequence[str], times: Times) -> None:
+        self._building, self._climate = building, climate
+        self._channels, self._times = channels, times
+        self._calm = True
+
+    def require(self, forcing: Array, steps: Steps) -> None:
+        """Refuse missing numbers, and flows that do not balance."""
+        _require_numbers(forcing, self._channels, self._building)
+        begins = np.asarray(self._times.first + steps.edges, dtype=np.float64)
+        require_balanced_flows(self._building, forcing, self._channels, begins, self._times.zone)
+        self._calm = self._calm and not forcing[..., CHANNELS.index("wind_speed")].any()
+
+    def require_wind(self) -> None:
+        """Refuse weather without wind, when all steps were looked at."""
+        require_wind(self._building, self._climate, calm=self._calm)
 
 
 def start_of(
     initial: float | GivenStart | MeasuredStart | None,
     building: Building,
     description: EngineDescription,
-    forcing: Array,
+    forcing: ForcingBlocks,
     start: datetime,
 ) -> float | InitialTemperatures | None:
     """Temperature or temperatures at the start; None to repeat the first period."""
     if initial is None or isinstance(initial, float):
         return initial
     # The weather of the first stage is also used at the start.
-    now = dict(zip((*CHANNELS, *description.channels), forcing[0, 0].tolist(), strict=True))
+    now = dict(zip((*CHANNELS, *description.channels), forcing.opening.tolist(), strict=True))
     ambient = Ambient(now["air_temperature"], now["day_of_year"], now)
     return resolved(initial, building, description.nodes, ambient, start)
 
 
 def settings_of(
     initial: float | InitialTemperatures | None,
-    forcing: Array,
+    forcing: ForcingBlocks,
     *,
     step_seconds: float,
     scheme: Scheme,
@@ -309,7 +330,7 @@ def settings_of(
     temperatures: float | dict[str, list[float]]
     if initial is None:
         # The temperature that the repetition starts from changes only its length.
-        temperatures = float(forcing[:, -1, 0].mean())
+        temperatures = forcing.air_temperature
     elif isinstance(initial, float):
         temperatures = initial
     else:
@@ -340,7 +361,7 @@ def chosen_forcing_of(
     start: float | GivenStart | MeasuredStart | None,
     first_period: float,
     outputs: Sequence[Output],
-) -> tuple[Array, WeatherInputs | None, StepSequence | None]:
+) -> tuple[ForcingBlocks, WeatherInputs | None, StepSequence | None]:
     """As `forcing_of`, with the steps of the run, which are chosen with the values of the building.
 
     Parameters
@@ -366,7 +387,7 @@ def chosen_forcing_of(
         return *forcing_in(times=times), None
     step_sequence.require_outputs(building, outputs)
     forcings = [
-        forcing_in(times=replace(times, step=times.step / 2**level))[0]
+        forcing_in(times=replace(times, step=times.step / 2**level), divided=False)[0]
         for level in range(step_sequence.weather_levels(times.step) + 1)
     ]
     initial = start_of(start, building, description, forcings[-1], times.start)
@@ -375,8 +396,8 @@ def chosen_forcing_of(
     )
     nominal = description.values  # noqa: PD011 (no pandas object)
     sequence = step_sequence.chosen_sequence(
-        auto, times.step, (plan_of(description.json), nominal), forcings, settings, (times.first, times.zone),
-        controlled=bool(building.controls),
+        auto, times.step, (plan_of(description.json), nominal), [level.whole for level in forcings], settings,
+        (times.first, times.zone), controlled=bool(building.controls),
     )  # fmt: skip
     return *forcing_in(times=times, halvings=sequence.halvings), sequence
 

@@ -17,10 +17,12 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: Size of a block. [B] The engine fills one while another one is written.
+#: Largest size of a block. [B] The engine fills one while another one is written.
 SIZE: Final = 32 * 2**20
-#: Blocks that stay in memory are smaller: beside them are all records.
-PARTS: Final = 8
+#: Size of a block of few series, and of one that stays in memory, beside all records. [B]
+SMALL: Final = 4 * 2**20
+#: Rows of a block of many series: a file gets each series in pieces of so many numbers.
+ROWS: Final = 4096
 
 
 def rows_of(columns: int, *, keeps_rows: bool = False) -> int:
@@ -38,8 +40,9 @@ def rows_of(columns: int, *, keeps_rows: bool = False) -> int:
     >>> rows_of(1024)
     4096
     """
-    size = SIZE // PARTS if keeps_rows else SIZE
-    return max(size // (8 * max(columns, 1)), 1)
+    row = 8 * max(columns, 1)
+    least = max(SMALL // row, 1)
+    return least if keeps_rows else max(min(SIZE // row, ROWS), least)
 
 
 class InMemory:

@@ -109,7 +109,7 @@ class _Csv:
 
     def __init__(self, part: Path, outputs: Sequence[Output], times: Times) -> None:
         self._names = [output.name for output in outputs]
-        self._index = times.index.rename("time")
+        self._times = times
         self._file = part.open("w", encoding="utf-8", newline="")
         self._done = 0
         self._attributes: Mapping[str, Any] = {}
@@ -117,7 +117,7 @@ class _Csv:
     def take(self, rows: Array) -> None:
         import pandas as pd
 
-        index = self._index[self._done : self._done + len(rows)]
+        index = self._times.part(self._done, self._done + len(rows)).rename("time")
         table = pd.DataFrame(rows, index=index, columns=self._names)
         table.to_csv(self._file, header=self._done == 0, index_label="time", lineterminator="\n")
         self._done += len(rows)

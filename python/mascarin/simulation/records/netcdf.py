@@ -9,7 +9,7 @@ xarray would write the same file from all records in memory, and takes some mill
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self, cast
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from mascarin.simulation.records.times import Times
 
     Array = npt.NDArray[np.float64]
+    #: From the first row and the row behind the last one to the stamps between.
+    Moments = Callable[[int, int], npt.NDArray[np.int64]]
 
 #: Units of encoded times from long to short, and their length. [ns]
 _UNITS: Final = (
@@ -41,6 +43,8 @@ _UNITS: Final = (
     ("microseconds", 1_000),
     ("nanoseconds", 1),
 )
+#: Stamps that are written together.
+_STAMPS: Final = 2**16
 #: Series that are turned from rows to columns together.
 _TOGETHER: Final = 512
 _TEXT: Final = h5py.string_dtype()
@@ -121,8 +125,8 @@ class NetcdfDraft:
         self._done = 0
         with _hdf5(path, "w") as file:
             stamps = _Stamps(file, self._rows)
-            stamps.add("time", times.nanoseconds(), scale=True)
-            stamps.add("local_time", times.clock_nanoseconds())
+            stamps.add("time", times.nanoseconds, scale=True)
+            stamps.add("local_time", times.clock_nanoseconds)
             series = _Series(file, stamps, times.timezone)
             self._places = [series.add(output.name, output.unit) for output in outputs]
             stamps.close(series.references)
@@ -193,17 +197,22 @@ class _Stamps:
         """The series of the dimension."""
         return self._file["time"].id
 
-    def add(self, name: str, moments: npt.NDArray[np.int64], *, scale: bool = False) -> None:
-        """Add stamps. [ns since 1970-01-01]"""
-        steps = np.unique(np.diff(moments))
-        unit, length = next(candidate for candidate in _UNITS if not (steps % candidate[1]).any())
-        begin = np.datetime64(int(moments[0]), "ns")
-        text = str(begin.astype("datetime64[s]")).replace("T", " ")
-        fraction = int(moments[0]) % 1_000_000_000
+    def add(self, name: str, moments: Moments, *, scale: bool = False) -> None:
+        """Add stamps, from rows to stamps since 1970-01-01. [ns]"""
+        rows = self.space.get_simple_extent_npoints()
+        blocks = [(row, min(row + _STAMPS, rows)) for row in range(0, rows, _STAMPS)]
+        steps: set[int] = set()
+        for first, last in blocks:  # from the last stamp of the block before on
+            steps.update(np.unique(np.diff(moments(max(first - 1, 0), last))).tolist())
+        unit, length = next(each for each in _UNITS if not any(step % each[1] for step in steps))
+        start = int(moments(0, 1)[0])
+        text = str(np.datetime64(start, "ns").astype("datetime64[s]")).replace("T", " ")
+        fraction = start % 1_000_000_000
         if fraction:
             text += f".{fraction:09d}"
-        data = (moments - moments[0]) // length
-        stamps = self._file.create_dataset(name, data=data, dtype="<i8", track_order=True)
+        stamps = self._file.create_dataset(name, (rows,), dtype="<i8", track_order=True)
+        for first, last in blocks:
+            stamps[first:last] = (moments(first, last) - start) // length
         if scale:
             h5py.h5ds.set_scale(stamps.id, name.encode())
         else:

@@ -76,19 +76,30 @@ class Times:
         index = self.__dict__.get("index")
         return len(index) if index is not None else round((self.last - self.first) / self.step) + 1
 
-    def nanoseconds(self) -> npt.NDArray[np.int64]:
-        """Times since 1970-01-01 UTC, shape (rows,). [ns]"""
-        if self._whole_microseconds:
-            first, step = round(self.first * 1e6), round(self.step * 1e6)
-            return (first + step * np.arange(self.rows, dtype=np.int64)) * 1000
-        return _nanoseconds(self.index.tz_convert("UTC"))
+    def part(self, first: int, last: int) -> pd.DatetimeIndex:
+        """The times of rows from one to before another one in the local clock, without those of all rows."""
+        import pandas as pd
 
-    def clock_nanoseconds(self) -> npt.NDArray[np.int64]:
-        """Readings of the local clock since its 1970-01-01, shape (rows,). [ns]"""
+        if "index" in self.__dict__:
+            return self.index[first:last]
+        start, step = stamps_of(np.array([self.first]), self.zone)[0], pd.Timedelta(seconds=self.step)
+        return pd.date_range(start + first * step, periods=min(last, self.rows) - first, freq=step)
+
+    def nanoseconds(self, first: int = 0, last: int | None = None) -> npt.NDArray[np.int64]:
+        """Times since 1970-01-01 UTC, shape (rows,), of all rows or from one to before another one. [ns]"""
+        last = self.rows if last is None else min(last, self.rows)
+        if self._whole_microseconds:
+            begin, step = round(self.first * 1e6), round(self.step * 1e6)
+            return (begin + step * np.arange(first, last, dtype=np.int64)) * 1000
+        return _nanoseconds(self.part(first, last).tz_convert("UTC"))
+
+    def clock_nanoseconds(self, first: int = 0, last: int | None = None) -> npt.NDArray[np.int64]:
+        """Readings of the local clock since its 1970-01-01, shape (rows,), of rows as above. [ns]"""
+        last = self.rows if last is None else min(last, self.rows)
         offset = self.zone.utcoffset(None)
         if offset is None or not self._whole_microseconds:  # a zone whose clocks change
-            return _nanoseconds(self.index)
-        return self.nanoseconds() + round(offset.total_seconds() * 1e6) * 1000
+            return _nanoseconds(self.part(first, last))
+        return self.nanoseconds(first, last) + round(offset.total_seconds() * 1e6) * 1000
 
     @property
     def _whole_microseconds(self) -> bool:

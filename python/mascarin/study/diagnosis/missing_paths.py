@@ -11,6 +11,7 @@ import numpy as np
 
 from mascarin.building.engine_input.series_users import courses
 from mascarin.simulation.preparation.weather_inputs import corrected_forcing
+from mascarin.tables.forcing_blocks import ForcingBlocks
 from mascarin.weather.instruments.column_errors import RIGHT, SUN, ColumnError
 from mascarin.weather.records.channels import CHANNELS, RADIATION
 
@@ -157,7 +158,7 @@ def _candidates(setup: StudyContext, simulation: Simulation, forcing: Array) -> 
 def simulated_with(setup: StudyContext, simulation: Simulation, forcing: Array, vector: Array) -> Array:
     """Series with another forcing, shape (n, S); NaN where the model cannot be run. [unit of each sensor]"""
     sensors = len(setup.observation.names)
-    run = replace(simulation.compiled, forcing=forcing, inputs=None)
+    run = replace(simulation.compiled, forcing_blocks=ForcingBlocks.of(forcing), inputs=None)
     records = run.ensemble(vector[None]).records[0]
     return np.asarray(setup.observation.simulated(simulation.index, records[:, :sensors]))
 

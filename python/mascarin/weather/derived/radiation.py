@@ -70,7 +70,14 @@ def clear_beam(sun_up: Array) -> Array:
 
 
 def from_means(
-    sun: Sun, start: float, interval: float, direct: Array, diffuse: Array, total: Array, basis: Basis
+    sun: Sun,
+    start: float,
+    interval: float,
+    direct: Array,
+    diffuse: Array,
+    total: Array,
+    basis: Basis,
+    before: int = 0,
 ) -> SkyProfiles:
     """Reconstruct the sky from interval means.
 
@@ -87,6 +94,8 @@ def from_means(
         The two whose means are kept; the third follows. With `all` the direct and the diffuse mean are kept.
         Inside the interval, the beam then lies between a constant beam and the beam of a clear sky, such
         that the mean of the global irradiance comes nearest to the given one.
+    before : int
+        Intervals between `start` and that of the first value.
 
     Returns
     -------
@@ -94,7 +103,7 @@ def from_means(
         The irradiances inside the intervals.
     """
     pieces = pieces_for(interval)
-    times = node_times(start, interval, len(diffuse), pieces)
+    times = node_times(start, interval, len(diffuse), pieces, before)
     up = np.maximum(sun.vector(times)[..., 2], 0.0)
     extra = sun.normal_irradiance(times)
     weights = trapezoid_weights(pieces)
@@ -111,17 +120,24 @@ def from_means(
         beam = clear * index_nodes(bounded, clear * up, BEAM_CLEAR)
         moved = total - diffuse - bounded
     sky = _diffuse(diffuse + moved, extra * up, weights)
-    return _sky(start, interval, (beam, sky, beam * up + sky), moved)
+    return _sky(start, interval, (beam, sky, beam * up + sky), moved, before)
 
 
 def from_instants(
-    sun: Sun, start: float, interval: float, direct: Array, diffuse: Array, total: Array, basis: Basis
+    sun: Sun,
+    start: float,
+    interval: float,
+    direct: Array,
+    diffuse: Array,
+    total: Array,
+    basis: Basis,
+    before: int = 0,
 ) -> SkyProfiles:
     """The sky from values at the stamps, linear between them.
 
     Parameters are those of `from_means`, with arrays of shape (n + 1,): a value at each end of each interval.
     """
-    times = start + interval * np.arange(len(diffuse))
+    times = start + interval * np.arange(before, before + len(diffuse))
     up = np.maximum(sun.vector(times)[:, 2], 0.0)
     sky = diffuse
     beam = direct
@@ -130,7 +146,7 @@ def from_instants(
         beam = direct_by_closure(total, diffuse, up, sun.normal_irradiance(times) * clear_beam(up))
         moved = total - diffuse - beam * up
         sky = diffuse + moved
-    return _sky(start, interval, (_pairs(beam), _pairs(sky), _pairs(beam * up + sky)), moved)
+    return _sky(start, interval, (_pairs(beam), _pairs(sky), _pairs(beam * up + sky)), moved, before)
 
 
 def direct_by_closure(total: Array, diffuse: Array, up: Array, clear: Array) -> Array:
@@ -185,8 +201,10 @@ def _diffuse(means: Array, horizontal: Array, weights: Array) -> Array:
     return np.asarray(sky + (means - bounded)[:, None])
 
 
-def _sky(start: float, interval: float, nodes: tuple[Array, Array, Array], moved: Array) -> SkyProfiles:
-    beam, sky, total = (PiecewiseProfile(start, interval, values) for values in nodes)
+def _sky(
+    start: float, interval: float, nodes: tuple[Array, Array, Array], moved: Array, before: int
+) -> SkyProfiles:
+    beam, sky, total = (PiecewiseProfile(start, interval, values, before) for values in nodes)
     return SkyProfiles(beam, sky, total, moved)
 
 

@@ -49,16 +49,25 @@ class SunPath:
         Direction to the sun in axes (meridian, east, pole) that turn with the mean sun [-].
     extra : ndarray, shape (nodes,)
         Extraterrestrial normal irradiance [W/m2].
+    before : int
+        Nodes from the first one on that are not there: a part of a span has the bits of the whole.
     """
 
     latitude: float
     first: float
     slow: Array
     extra: Array
+    before: int = 0
 
     @classmethod
     def over(
-        cls, latitude: float, longitude: float, start: float, end: float, origin: float = 0.0
+        cls,
+        latitude: float,
+        longitude: float,
+        start: float,
+        end: float,
+        origin: float = 0.0,
+        part: tuple[float, float] | None = None,
     ) -> SunPath:
         """Prepare the sun for a span of time.
 
@@ -70,10 +79,17 @@ class SunPath:
             Span, seconds since 1970-01-01 UTC [s].
         origin : float
             Time from which the times of the other methods count, seconds since 1970-01-01 UTC [s].
+        part : (float, float), optional
+            The part of the span that is asked for, seconds since 1970-01-01 UTC [s].
         """
         first = (np.floor(start / _NODE_STEP) - 2.0) * _NODE_STEP
         count = int(np.ceil((end - first) / _NODE_STEP)) + 4
-        return cls(latitude, first - origin, *_nodes(latitude, longitude, float(first), count))
+        before = 0
+        if part is not None:
+            before = max(int(np.floor((part[0] - first) / _NODE_STEP)) - 2, 0)
+            count = min(int(np.ceil((part[1] - first) / _NODE_STEP)) + 4, count) - before
+        nodes = _nodes(latitude, longitude, float(first), count, before)
+        return cls(latitude, first - origin, *nodes, before)
 
     def vector(self, time: Array) -> Array:
         """Unit vector to the centre of the sun, without refraction.
@@ -89,7 +105,7 @@ class SunPath:
             East, north and up components; up <= 0 below the horizon [-].
         """
         position = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
-        slow = lagrange(self.slow, position)
+        slow = lagrange(self.slow, position, self.before)
         slow /= np.sqrt(np.sum(slow * slow, axis=-1, keepdims=True))
         return _from_pole(_turn(slow, -_TURN * _NODE_STEP * position), np.radians(self.latitude))
 
@@ -107,14 +123,16 @@ class SunPath:
             Irradiance on a plane facing the sun, outside the atmosphere [W/m2].
         """
         position = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
-        return lagrange(self.extra[:, None], position)[..., 0]
+        return lagrange(self.extra[:, None], position, self.before)[..., 0]
 
 
 @lru_cache(maxsize=16)
-def _nodes(latitude: float, longitude: float, first: float, count: int) -> tuple[Array, Array]:
+def _nodes(
+    latitude: float, longitude: float, first: float, count: int, before: int = 0
+) -> tuple[Array, Array]:
     """`SunPath.slow` and `SunPath.extra`. Checks, runs and reports of one building ask for the same hours."""
     spa = _algorithm()
-    seconds = first + _NODE_STEP * np.arange(count)
+    seconds = first + _NODE_STEP * np.arange(before, before + count)
     # At sea level; pressure and temperature only change the refraction, which is not used.
     _, zenith, _, _, azimuth, _ = spa.solar_position(
         seconds, latitude, longitude, 0.0, STANDARD_PRESSURE / 100.0, 12.0, _DELTA_T, 0.5667, 1
@@ -176,10 +194,25 @@ def _turn(vector: Array, angle: Array) -> Array:
     )
 
 
-def lagrange(nodes: Array, position: Array) -> Array:
-    """Four-point Lagrange interpolation of nodes (n, k) at fractional node numbers; n is 4 at least."""
-    base = np.clip(np.floor(position).astype(np.int64), 1, len(nodes) - 3)
+def lagrange(nodes: Array, position: Array, before: int = 0) -> Array:
+    """Four-point Lagrange interpolation of nodes (n, k) at fractional node numbers; n is 4 at least.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, k)
+        Values at whole numbers.
+    position : ndarray, shape (...,)
+        Where to interpolate. [-]
+    before : int
+        Number of the first node. [-]
+
+    Returns
+    -------
+    ndarray, shape (..., k)
+    """
+    base = np.clip(np.floor(position).astype(np.int64), before + 1, before + len(nodes) - 3)
     x = position - base
+    base -= before
     before, current = -x * (x - 1.0) * (x - 2.0) / 6.0, (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0
     after, beyond = (x + 1.0) * x * (x - 2.0) / 2.0, (x + 1.0) * x * (x - 1.0) / 6.0
     result = np.empty((*x.shape, nodes.shape[1]))
