@@ -230,7 +230,7 @@ def test_the_start_of_weather_that_does_not_change(layers: str, heated: bool, de
     result = mc.simulate(house, weather, step="1h", outputs=[output])
     steady = mc.steady(house, weather, outputs=[output], step="1h")[output]
     values = result.to_dataframe()[output].to_numpy()
-    # A free room follows its floor in days: what one day changes by 0.01 K at most may be farther from its end.
+    # A free room follows its floor in days: what changes by 0.01 K a day may be farther from its end.
     assert np.abs(values - steady).max() < (1.0 if heated else 0.05)
     assert steady > (550.0 if heated else 4.3)
     repetitions = re.search(r"repeated (\d+) times", result.provenance.start)
