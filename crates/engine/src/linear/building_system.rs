@@ -208,22 +208,24 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         load_residual_before
     }
 
-    /// Solves for the unknowns that [`Self::solve`] does not compute, and copies laws and exterior surfaces of the zone fronts to
-    /// others. False in the lanes where a wall that touches no zone is not a number.
+    /// Solves for the unknowns that [`Self::solve`] does not compute, and copies exterior surfaces of the zone fronts to others;
+    /// with `laws`, for the energy balance, theirs and the windows, too. False in the lanes where a wall that touches no zone is not a number.
     #[inline(always)]
     pub(crate) fn finish(
         &mut self,
         model: &Model<'_, S>,
-        laws: &mut BySide<SurfaceLaws<S>>,
+        laws: Option<&mut BySide<SurfaceLaws<S>>>,
         solution: &mut Unknowns<S>,
     ) -> S::Mask {
         if !model.parts.nonlinear_balances && self.thick_walls.is_empty() {
             self.resolve_linear_walls(model, solution);
         }
-        if !model.parts.balances_stay() {
-            self.zone_fronts.write_exterior_laws(laws);
+        if let Some(laws) = laws {
+            if !model.parts.balances_stay() {
+                self.zone_fronts.write_exterior_laws(laws);
+            }
+            self.zone_fronts.write_windows(&solution.cells, &mut self.walls);
         }
-        self.zone_fronts.write_windows(&solution.cells, &mut self.walls);
         if S::DERIVATIVES || model.loads_by_responses() {
             self.zone_fronts.write_exterior_surfaces(&mut self.exterior, &mut self.inverses);
         }

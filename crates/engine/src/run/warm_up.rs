@@ -5,7 +5,6 @@
 
 use crate::balance::energy_balance::EnergyBalance;
 use crate::building::model::Model;
-use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::run::action::Action;
@@ -88,9 +87,7 @@ impl<S: Real> Progress<S> {
     }
 }
 
-/// Repetitions by which a change of soil is multiplied at most: more would ask for what short periods never show.
-const SLOWEST: f64 = 200.0;
-/// Repetitions after which soil counts as all else does: a control that switches moves it a little, again and again.
+/// Repetitions after which what is left to soil counts no more: a control that switches moves it a little, again and again.
 const SETTLING: usize = 50;
 
 /// Repeats the first period until every lane has converged. Gives the number of repetitions
@@ -106,7 +103,7 @@ pub(super) fn warm_up<'a, S: Real>(
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
     let tolerance = warmup.tolerance.max(LEAST.of::<S>());
     let period = options.elapsed(warmup.steps);
-    let (soil, soil_start) = (slow_soil(stepper.model.plan, period), SoilStart::new(&stepper.model, period));
+    let soil_start = SoilStart::new(&stepper.model, period);
     let mut progress = Progress::new(state, tolerance);
     let mut known: Option<PeriodicStart<S>> = None;
     // What the guesses of the lanes that have converged are made from, as their last repetition left it.
@@ -121,7 +118,11 @@ pub(super) fn warm_up<'a, S: Real>(
             action.take(stepper, &mut next, weather, options.length(action.step()), &mut unused)?;
             observe(stepper, &next, action)?;
         }
-        let change = largest_change(state, &next, if cycle <= SETTLING { &soil } else { &[] });
+        let advanced = soil_start.advance(state, &next);
+        let mut change = next.distance(state);
+        if let Some((_, left)) = advanced.as_ref().filter(|_| cycle <= SETTLING) {
+            change = change.max(*left);
+        }
         let reached = progress.note(&next, change, cycle, stepper.failed());
         if S::LANES > 1 {
             remember(&mut history, reached, stepper.history());
@@ -135,8 +136,7 @@ pub(super) fn warm_up<'a, S: Real>(
             restore(stepper, history.as_ref());
             return Ok((cycle, progress.change_left));
         }
-        let advanced = soil_start.advance(state, &next);
-        let end = advanced.as_ref().unwrap_or(&next);
+        let end = advanced.as_ref().map_or(&next, |(advanced, _)| advanced);
         let start = next_start(&mut known, &stepper.model, (state, end), change, tolerance);
         state.take(reached, &next);
         state.take(progress.active, &start);
@@ -167,31 +167,6 @@ fn next_start<S: Real>(
     }
     *known = Some(PeriodicStart::new(model, start, end));
     end.clone()
-}
-
-/// The largest change between two repetitions [K]; that of slow cells of soil as what is left to change.
-fn largest_change<S: Real>(state: &State<S>, next: &State<S>, soil: &[(usize, f64)]) -> S {
-    soil.iter().fold(next.distance(state), |largest, &(cell, repetitions)| {
-        largest.max((next.cells[cell] - state.cells[cell]).abs().scale(repetitions))
-    })
-}
-
-/// Cells of soil that take more than one repetition of a period [s] to follow what is around them, and how many: a change is that part of what
-/// is left to change.
-fn slow_soil(plan: &Plan, period: f64) -> Vec<(usize, f64)> {
-    let mut slow = Vec::new();
-    for (wall, surface) in plan.walls.iter().zip(&plan.description.surfaces) {
-        let Some(soil) = &surface.soil else { continue };
-        let mut behind = 0.0;
-        for (cell, (capacity, resistance)) in soil.capacities.iter().zip(&soil.resistances).enumerate() {
-            behind += resistance;
-            let repetitions = capacity * behind / period;
-            if repetitions > 1.0 {
-                slow.push((wall.first_cell + cell, repetitions.min(SLOWEST)));
-            }
-        }
-    }
-    slow
 }
 
 /// Takes over what guesses are made from, in some lanes.

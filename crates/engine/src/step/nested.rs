@@ -43,7 +43,7 @@ impl<S: Real> StageSolver<'_, S> {
             {
                 self.counters.nested += 1;
                 self.accept_change(change);
-                return self.finish(stage).any();
+                return self.finish(stage, true).any();
             }
             outer.copy_from(&self.solution);
         }

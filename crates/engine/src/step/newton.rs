@@ -47,8 +47,8 @@ pub struct Counters<S> {
 /// How a stage is solved.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Search<S: Real> {
-    /// One linear solve at the iterate.
-    Once,
+    /// One linear solve at the iterate; only a solution that may be the last is `complete`.
+    Once { complete: bool },
     /// Until it has converged, in these lanes.
     Whole(S::Mask),
 }
@@ -114,7 +114,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
                 self.begin(stage);
                 let mut sound = S::Mask::splat(true);
                 match search {
-                    Search::Once => sound = self.solve_once(stage),
+                    Search::Once { complete } => sound = self.solve_once(stage, complete),
                     Search::Whole(active) => self.converge(stage, active)?,
                 }
                 Ok(sound)
@@ -135,9 +135,9 @@ impl<'a, S: Real> StageSolver<'a, S> {
 
     /// One linear solve at the iterate.
     #[inline(always)]
-    fn solve_once(&mut self, stage: &Stage<'_, S>) -> S::Mask {
+    fn solve_once(&mut self, stage: &Stage<'_, S>, complete: bool) -> S::Mask {
         self.solve_linearised(stage, None);
-        self.finish(stage)
+        self.finish(stage, complete)
     }
 
     /// Linearises everything about the iterate and solves; `outer` as in [`Linearisation::linearise_wall`].
@@ -180,11 +180,11 @@ impl<'a, S: Real> StageSolver<'a, S> {
                 self.advance(stage, S::Mask::splat(true), 0);
             } else {
                 self.accept_change(change);
-                let lost = !(self.finish(stage) | self.failed);
+                let lost = !(self.finish(stage, true) | self.failed);
                 return if lost.any() { self.fail(stage, lost) } else { Ok(()) };
             }
         }
-        self.finish(stage);
+        self.finish(stage, true);
         // Known when it is compiled: lanes have no nested iteration.
         if const { S::LANES > 1 } {
             return self.fail(stage, active);
@@ -199,11 +199,12 @@ impl<'a, S: Real> StageSolver<'a, S> {
         self.control.map_or(Ok(()), RunControl::check)
     }
 
-    /// Solves for all that Newton's iteration did not need. False in the lanes where a wall that touches no zone is not a
+    /// Solves for all that Newton's iteration did not need; what the energy balance reads only where the solution is to be `complete`. False in the lanes where a wall that touches no zone is not a
     /// number; of all other walls the iteration has noticed.
     #[inline(always)]
-    pub(super) fn finish(&mut self, stage: &Stage<'_, S>) -> S::Mask {
-        self.system.finish(stage.model, &mut self.linearisation.laws.surfaces, &mut self.solution)
+    pub(super) fn finish(&mut self, stage: &Stage<'_, S>, complete: bool) -> S::Mask {
+        let laws = complete.then_some(&mut self.linearisation.laws.surfaces);
+        self.system.finish(stage.model, laws, &mut self.solution)
     }
 
     /// Marks lanes as failed: each is run again alone; the others go on. An error where none is left.

@@ -100,9 +100,9 @@ impl<S: Real> WallCoefficients<S> {
 }
 
 impl<S: Real> WallCoefficients<S> {
-    /// Resistance of its layers of constant properties behind its first cells [m2 K/W].
+    /// Resistance behind its first cells, without that of layers whose properties change [m2 K/W].
     pub(crate) fn resistance_behind(&self, cells: usize) -> S {
-        let massless = self.layer_resistance.iter().fold(S::zero(), |sum, &resistance| sum + resistance);
+        let massless = self.extra[cells..].iter().fold(S::zero(), |sum, &resistance| sum + resistance);
         let solid = |cell: &Cell<S>| match cell.matter {
             Matter::Solid { conductivity, .. } => cell.thickness / conductivity,
             Matter::Pcm(_) => S::zero(),

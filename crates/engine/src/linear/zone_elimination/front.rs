@@ -177,10 +177,12 @@ impl<S: Real> ZoneFront<S> {
     ) {
         self.laws.set_wind(conditions);
         if self.side_by_side() {
-            for place in 0..self.laws.count {
-                let solar = conditions.surfaces[self.laws.surface(place)].solar;
-                let radiant = radiant(self.layout.zones[place % S::CHUNK]);
-                self.heat[place] = self.area[place] * solar + radiant * self.radiant_share[place];
+            for (lane, &zone) in self.layout.zones.iter().enumerate() {
+                let radiant = radiant(zone);
+                for place in (lane..self.laws.count).step_by(S::CHUNK) {
+                    let solar = conditions.surfaces[self.laws.surface(place)].solar;
+                    self.heat[place] = self.area[place] * solar + radiant * self.radiant_share[place];
+                }
             }
         } else {
             let radiant = radiant(self.layout.zones[0]);

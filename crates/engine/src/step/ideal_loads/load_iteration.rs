@@ -216,7 +216,8 @@ impl<S: Real> Stepper<'_, S> {
                 solver.advance(&stage, active, number.min(DAMPING_START - 1));
             }
             ideal_loads.hold(index + 1 == weights.len(), &mut solver.start.holding);
-            let search = if number < SINGLE_SWEEPS { Search::Once } else { Search::Whole(active) };
+            let once = Search::Once { complete: may_end || self.residuals.is_some() };
+            let search = if number < SINGLE_SWEEPS { once } else { Search::Whole(active) };
             let mut sound = solver.solve(&stage, search)?;
             if again
                 && index == 0
