@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -156,9 +157,20 @@ class BuildingModel:
             k for k, parameter in enumerate(parameters) if path in (parameter.path, *parameter.members)
         )
 
+    @cached_property
+    def _seen(self) -> Observation:
+        """The observation at the instants and of the sensors to compare."""
+        whole, columns = self.observation, list(self.columns)
+        return replace(
+            whole,
+            times=whole.times[self.rows],
+            measured=whole.measured[np.ix_(self.rows, columns)],
+            kinds=tuple(whole.kinds[s] for s in columns),
+            names=tuple(whole.names[s] for s in columns),
+        )
+
     def _compared(self, records: Array) -> Array:
-        series = self.observation.simulated(self.simulation.index, records)
-        return series[:, self.rows][:, :, list(self.columns)]
+        return self._seen.simulated(self.simulation.index, records[..., list(self.columns)])
 
 
 def problem_of(

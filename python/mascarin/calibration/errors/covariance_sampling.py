@@ -230,7 +230,7 @@ class _Chain:
         self.columns = np.concatenate(columns, axis=2).reshape(*self.shape, -1)
         # Eigenvectors of the correlation within a day, and the columns in them, by correlation time.
         self.kernels = {h: drift_kernel(grid, h) for h in CORRELATION_HOURS}
-        self.spectra = {h: np.linalg.eigh(kernel) for h, kernel in self.kernels.items()}
+        self.spectra = {h: _eigenvectors(kernel) for h, kernel in self.kernels.items()}
         self.turned = {h: _along_slots(vector.T, self.columns) for h, (_, vector) in self.spectra.items()}
 
     def turned_now(self) -> _Turned:
@@ -238,7 +238,7 @@ class _Chain:
         covariances = self.covariances
         value, vector = self.spectra[covariances.correlation_hours]
         noise = np.sqrt(covariances.white)
-        strength, turn = np.linalg.eigh(covariances.drift / np.outer(noise, noise))
+        strength, turn = _eigenvectors(covariances.drift / np.outer(noise, noise))
         to_sensor = turn.T / noise  # from sensors to values of variance 1 + the product of the eigenvalues
         slow_part = np.outer(value, np.maximum(strength, 0.0))  # (H, S)
         columns = np.einsum(
@@ -402,6 +402,17 @@ def _cholesky(total: Floats) -> Floats:
         alike = total / np.outer(scale, scale)
         lift = len(total) * _ROUND_OFF - min(float(np.linalg.eigvalsh(alike)[0]), 0.0)
         return np.asarray(scale[:, None] * np.linalg.cholesky(alike + lift * np.eye(len(total))))
+
+
+def _eigenvectors(symmetric: Floats) -> tuple[Floats, Floats]:
+    """Eigenvalues (n,) and eigenvectors (n, n), the largest component of each positive.
+
+    Errors are drawn along them. Signs that depend on round-off would give other draws of the same distribution
+    on other machines.
+    """
+    value, vectors = np.linalg.eigh(symmetric)
+    largest = np.abs(vectors).argmax(axis=0)
+    return value, vectors * np.sign(vectors[largest, np.arange(len(value))])
 
 
 def _along_slots(matrix: Floats, values: Floats) -> Floats:

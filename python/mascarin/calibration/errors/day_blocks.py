@@ -32,12 +32,8 @@ Flags = NDArray[np.bool_]
 
 #: Length of a slot that is tried, the shortest first. [h]
 _SLOTS: Final = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
-#: Largest size of a block, of one that is inverted at once, and number of products of one multiplication:
-#: with more the linear algebra libraries use several threads, which wait for each other on a busy machine.
-#: With more days blocks are smaller, so that the work stays the same.
+#: Largest size of a block. With more days blocks are smaller, so that the work stays the same.
 _MAX_DAY_SIZE: Final = 144
-_AT_ONCE: Final = 60
-_MAX_PRODUCT_SIZE: Final = 200_000
 _WORK: Final = 4e7
 
 
@@ -187,19 +183,24 @@ class DayGaussian:
         return blocks, both, which
 
     @cached_property
-    def _inverse(self) -> Floats:
-        """Inverses of the blocks, zero where nothing is there, shape (D, n, n)."""
+    def _inverses(self) -> tuple[Floats, list[NDArray[np.int64]]]:
+        """Inverses of the different blocks, zero where nothing is there, and the days that have each."""
         blocks, both, which = self._alike
-        inverse = inverted(blocks)
-        inverse = np.where(both, 0.5 * (inverse + np.swapaxes(inverse, 1, 2)), 0.0)
-        return np.asarray(inverse[which])
+        return np.where(both, inverted(blocks), 0.0), [np.flatnonzero(which == k) for k in range(len(blocks))]
+
+    def _weighted(self, values: Floats) -> Floats:
+        """Multiply values (D, n, k) with the inverses of the blocks. [1/unit^2]"""
+        weighted = np.empty(values.shape)
+        for inverse, days in zip(*self._inverses, strict=True):
+            weighted[days] = inverse @ values[days]
+        return weighted
 
     @cached_property
     def _added(self) -> tuple[Floats, Floats]:
         """``B^-1 U``, and ``U' B^-1 U``: what these values add to the precision of the coefficients."""
         used = np.where(self.present[:, :, None], self.columns, 0.0)
-        weighted = product(self._inverse, used)
-        return weighted, product(np.swapaxes(used, 1, 2), weighted).sum(axis=0)
+        weighted = self._weighted(used)
+        return weighted, summed(used, weighted)
 
     @cached_property
     def _shared(self) -> tuple[Floats, Floats]:
@@ -215,7 +216,7 @@ class DayGaussian:
         other = replace(self, elsewhere=elsewhere)
         # Nothing of these depends on the other experiments.
         other.__dict__.update(
-            {name: self.__dict__[name] for name in ("_alike", "_inverse", "_own") if name in self.__dict__}
+            {name: self.__dict__[name] for name in ("_alike", "_inverses", "_added") if name in self.__dict__}
         )
         return other
 
@@ -261,18 +262,36 @@ class DayGaussian:
         """
         wide = values if values.ndim == 3 else values[:, :, None]
         weighted = self._shared[0]
-        inner = product(np.swapaxes(weighted, 1, 2), wide).sum(axis=0)
+        inner = summed(weighted, wide)
         if beside is not None:
             inner = inner + beside[:, None]
-        solution = product(self._inverse, wide) - product(weighted, (self.covariance @ inner)[None])
+        solution = self._weighted(wide) - weighted @ (self.covariance @ inner)
         return np.asarray(solution if values.ndim == 3 else solution[:, :, 0])
+
+    def quadratic(self, values: Floats) -> Floats:
+        """Compute ``V' Omega^-1 V`` of values V (D, n, k), shape (k, k); those of other experiments are zero."""
+        inner = summed(self._shared[0], values)
+        return summed(values, self._weighted(values)) - inner.T @ self.covariance @ inner
 
     @cached_property
     def inverse_blocks(self) -> Floats:
         """Blocks of the days of the inverse of the whole covariance, shape (D, n, n). [1/unit^2]"""
+        weighted, blocks = self._shared[0], np.empty(self.blocks.shape)
+        for inverse, days in zip(*self._inverses, strict=True):
+            blocks[days] = inverse
+        return np.asarray(blocks - (weighted @ self.covariance) @ np.swapaxes(weighted, 1, 2))
+
+    @cached_property
+    def sum_of_inverse_blocks(self) -> Floats:
+        """Sum of `inverse_blocks` over the days, shape (n, n). [1/unit^2]"""
         weighted = self._shared[0]
-        explained = product(product(weighted, self.covariance[None]), np.swapaxes(weighted, 1, 2))
-        return np.asarray(self._inverse - explained)
+        size = weighted.shape[1]
+        total = np.zeros((size, size))
+        for inverse, days in zip(*self._inverses, strict=True):
+            total += len(days) * inverse
+        by_value = np.swapaxes(weighted, 0, 1).reshape(size, -1)
+        explained = np.swapaxes(weighted @ self.covariance, 0, 1).reshape(size, -1)
+        return np.asarray(total - explained @ by_value.T)
 
     def log_density(self, values: Floats) -> float:
         """Return the logarithm of the density of values (D, n)."""
@@ -402,32 +421,29 @@ class Experiments:
         return -0.5 * (square + logdet + count * math.log(2.0 * math.pi))
 
 
-def product(first: Floats, second: Floats) -> Floats:
-    """Multiply matrices (d, m, k) and (d or 1, k, n), a few rows at a time.
+def summed(first: Floats, second: Floats) -> Floats:
+    """Sum of the products ``A_d' B_d`` over days.
 
     Parameters
     ----------
-    first, second : ndarray
-        The matrices.
+    first, second : ndarray, shape (D, n, j) and (D, n, k)
+        The matrices A and B.
 
     Returns
     -------
-    ndarray, shape (d, m, n)
+    ndarray, shape (j, k)
 
     Examples
     --------
-    >>> product(np.ones((2, 3, 4)), np.ones((1, 4, 5))).shape
-    (2, 3, 5)
+    >>> summed(np.ones((2, 3, 1)), np.full((2, 3, 1), 2.0))
+    array([[12.]])
     """
-    days, rows, inner = first.shape
-    most = max(1, _MAX_PRODUCT_SIZE // max(inner * second.shape[2], 1))
-    together = max(n for n in range(1, rows + 1) if rows % n == 0 and n <= most) if rows else 1
-    parts = np.ascontiguousarray(first).reshape(days, -1, together, inner) @ second[:, None]
-    return np.asarray(parts.reshape(days, rows, second.shape[2]))
+    flat = first.reshape(-1, first.shape[2])
+    return np.asarray(flat.T @ second.reshape(-1, second.shape[2]))
 
 
 def inverted(blocks: Floats) -> Floats:
-    """Invert symmetric matrices (k, n, n), in halves while they are large.
+    """Invert symmetric matrices (k, n, n).
 
     Parameters
     ----------
@@ -437,6 +453,7 @@ def inverted(blocks: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (k, n, n)
+        Symmetric.
 
     Examples
     --------
@@ -444,17 +461,15 @@ def inverted(blocks: Floats) -> Floats:
     array([[0.5 , 0.  ],
            [0.  , 0.25]])
     """
-    size = blocks.shape[1]
-    if size <= _AT_ONCE:
-        return np.asarray(np.linalg.inv(blocks))
-    half = size // 2
-    first, beside, last = blocks[:, :half, :half], blocks[:, :half, half:], blocks[:, half:, half:]
-    inner = inverted(first)
-    across = product(inner, beside)
-    lower_block = inverted(last - product(np.swapaxes(beside, 1, 2), across))
-    inverse = np.empty_like(blocks)
-    inverse[:, half:, half:] = lower_block
-    inverse[:, :half, half:] = -product(across, lower_block)
-    inverse[:, half:, :half] = np.swapaxes(inverse[:, :half, half:], 1, 2)
-    inverse[:, :half, :half] = inner - product(inverse[:, :half, half:], np.swapaxes(across, 1, 2))
+    from scipy.linalg import lapack
+
+    inverse = np.empty(blocks.shape)
+    for k, block in enumerate(blocks):
+        root, failed = lapack.dpotrf(block, lower=True)
+        lower, singular = lapack.dpotri(root, lower=True) if not failed else (root, failed)
+        if failed or singular:  # not positive definite to round-off
+            general = np.linalg.inv(block)
+            inverse[k] = 0.5 * (general + general.T)
+        else:
+            inverse[k] = np.tril(lower) + np.tril(lower, -1).T
     return inverse

@@ -26,12 +26,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, Experiments, product
+from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, Experiments
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -127,10 +128,11 @@ class Discrepancy:
 
     def block(self, grid: DayGrid) -> Floats:
         """Return the covariance of one day (H * S, H * S), without the error that repeats. [unit^2]"""
-        kernel = drift_kernel(grid, self.correlation_hours)
-        everywhere = np.ones_like(kernel)
-        white = np.tile(self.white, grid.slots)
-        return np.asarray(np.kron(kernel, self.drift) + np.kron(everywhere, self.day) + np.diag(white))
+        kernel, size = drift_kernel(grid, self.correlation_hours), grid.slots * self.white.size
+        of_slots = kernel[:, None, :, None] * self.drift[None, :, None, :] + self.day[None, :, None, :]
+        block = of_slots.reshape(size, size)
+        block[np.diag_indices(size)] += np.tile(self.white, grid.slots)
+        return np.asarray(block)
 
 
 def alike_days(days: int, persistence: float) -> float:
@@ -201,6 +203,11 @@ class DayData:
     def sensors(self) -> int:
         """Number of sensors S."""
         return self.within.size
+
+    @cached_property
+    def functions(self) -> Floats:
+        """Columns of the error that repeats for each function and sensor, (D, H * S, m * S). [-]"""
+        return self.repeating(np.eye(self.sensors))
 
     def repeating(self, root: Floats) -> Floats:
         """Columns of the error that repeats, (D, H * S, m * S), from a root of its covariance (S, S)."""
@@ -400,15 +407,14 @@ def _improved(
     drift = drift_kernel(grid, covariances.correlation_hours)
     kernels = {"day": np.ones_like(drift), "drift": drift}
     prior = _PRIOR_WEIGHT * np.diag(scale**2)
-    functions = data.repeating(np.eye(sensors))
     weighted = solved.reshape(grid.days, grid.slots, sensors)
-    inverse = now.inverse_blocks.reshape(grid.days, grid.slots, sensors, grid.slots, sensors)
+    inverse = now.sum_of_inverse_blocks.reshape(grid.slots, sensors, grid.slots, sensors)
     improved: dict[str, Any] = {}
-    of_hour = (functions * weighted.reshape(grid.days, -1, 1)).sum(axis=(0, 1)).reshape(-1, sensors)
-    spread = product(np.swapaxes(functions, 1, 2), now.solve(functions)).sum(axis=0)
+    of_hour = (solved.ravel() @ data.functions.reshape(solved.size, -1)).reshape(-1, sensors)
+    spread = now.quadratic(data.functions)
     for name, kernel in kernels.items():
         square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
-        trace = np.einsum("dhsgt,hg->st", inverse, kernel, optimize=True)
+        trace = np.einsum("hsgt,hg->st", inverse, kernel)
         if name == "day" and covariances.alike:
             # The first function of the error by hour is a constant, that of the common level.
             level = covariances.alike / _SPECTRUM[0]
@@ -419,7 +425,7 @@ def _improved(
     count = of_hour.shape[0]
     trace = np.einsum("kskt->st", spread.reshape(count, sensors, count, sensors))
     improved["hour"] = _step(covariances.hour, of_hour.T @ of_hour, trace, prior, limit)
-    curvature = np.einsum("dhshs->s", inverse) + _PRIOR_WEIGHT / covariances.white
+    curvature = np.einsum("hshs->s", inverse) + _PRIOR_WEIGHT / covariances.white
     squares = np.sum(weighted**2, axis=(0, 1)) + _PRIOR_WEIGHT * scale**2 / covariances.white**2
     improved["white"] = np.minimum(covariances.white * np.sqrt(squares / curvature), limit**2)
     moved = max(
