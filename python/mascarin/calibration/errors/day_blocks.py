@@ -128,13 +128,18 @@ class DayGrid:
         return np.asarray(square / np.maximum(mask.sum(axis=0), 1))
 
 
+Days = slice | NDArray[np.int64]
+
+
 @lru_cache(maxsize=16)
-def _different(present: bytes, days: int) -> tuple[Flags, NDArray[np.int64]]:
-    """Different rows of what is there (D, n), and which of them each day has; asked for in each iteration."""
+def _different(present: bytes, days: int) -> tuple[Flags, tuple[Days, ...]]:
+    """Different rows of what is there (D, n), and the days that have each; asked for in each iteration."""
     patterns, which = np.unique(
         np.frombuffer(present, dtype=np.bool_).reshape(days, -1), axis=0, return_inverse=True
     )
-    return patterns, which.reshape(-1).astype(np.int64)
+    if len(patterns) == 1:
+        return patterns, (slice(None),)
+    return patterns, tuple(np.flatnonzero(which.reshape(-1) == k) for k in range(len(patterns)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,6 +156,9 @@ class DayGaussian:
         Values that are there; the others count as if they did not exist.
     elsewhere : ndarray, shape (q, q), optional
         Precision of the coefficients from the values of other experiments, see `Experiments`. [-]
+    changing : int, optional
+        Number of the first columns that may differ between days; all others are the same on all days. All
+        columns when absent. [-]
 
     Examples
     --------
@@ -165,41 +173,49 @@ class DayGaussian:
     columns: Floats
     present: Flags
     elsewhere: Floats | None = None
+    changing: int | None = None
 
     @cached_property
-    def _alike(self) -> tuple[Floats, Flags, NDArray[np.int64]]:
-        """Different blocks, with ones on the diagonal where nothing is there, and which of them each day has.
+    def _alike(self) -> tuple[Floats, Flags, tuple[Days, ...]]:
+        """Different blocks, with ones on the diagonal where nothing is there, and the days that have each.
 
         Most days have the same block and the same values, so that one inverse serves them all.
         """
         if self.blocks.strides[0] == 0:
-            patterns, which = _different(self.present.tobytes(), len(self.present))
+            patterns, groups = _different(self.present.tobytes(), len(self.present))
+            blocks = np.broadcast_to(self.blocks[0], (len(patterns), *self.blocks.shape[1:]))
         else:
-            patterns, which = self.present, np.arange(len(self.present))
-        first = [int(np.flatnonzero(which == k)[0]) for k in range(len(patterns))]
+            patterns, blocks = self.present, self.blocks
+            groups = tuple(slice(k, k + 1) for k in range(len(patterns)))
+        if patterns.all():
+            return blocks, patterns, groups
         both = patterns[:, :, None] & patterns[:, None, :]
-        eye = np.eye(self.blocks.shape[1])
-        blocks = np.where(both, self.blocks[first], np.where(patterns[:, :, None], 0.0, eye))
-        return blocks, both, which
+        eye = np.eye(blocks.shape[1])
+        return np.where(both, blocks, np.where(patterns[:, :, None], 0.0, eye)), patterns, groups
 
     @cached_property
-    def _inverses(self) -> tuple[Floats, list[NDArray[np.int64]]]:
-        """Inverses of the different blocks, zero where nothing is there, and the days that have each."""
-        blocks, both, which = self._alike
-        return np.where(both, inverted(blocks), 0.0), [np.flatnonzero(which == k) for k in range(len(blocks))]
+    def _inverses(self) -> Floats:
+        """Inverses of the different blocks, zero where nothing is there, shape (k, n, n)."""
+        blocks, patterns, _ = self._alike
+        inverses = inverted(blocks)
+        return inverses if patterns.all() else inverses * (patterns[:, :, None] & patterns[:, None, :])
 
-    def _weighted(self, values: Floats) -> Floats:
-        """Multiply values (D, n, k) with the inverses of the blocks. [1/unit^2]"""
-        weighted = np.empty(values.shape)
-        for inverse, days in zip(*self._inverses, strict=True):
-            weighted[days] = inverse @ values[days]
+    def _weighted(self, values: Floats, changing: int | None = None) -> Floats:
+        """Multiply values (D, n, k), of which the first may differ, with the inverses of the blocks. [1/unit^2]"""
+        weighted, first = np.empty(values.shape), values.shape[2] if changing is None else changing
+        for inverse, days in zip(self._inverses, self._alike[2], strict=True):
+            part = values[days]
+            weighted[days, :, :first] = inverse @ part[:, :, :first]
+            if first < values.shape[2]:
+                weighted[days, :, first:] = inverse @ part[0, :, first:]
         return weighted
 
     @cached_property
     def _added(self) -> tuple[Floats, Floats]:
         """``B^-1 U``, and ``U' B^-1 U``: what these values add to the precision of the coefficients."""
-        used = np.where(self.present[:, :, None], self.columns, 0.0)
-        weighted = self._weighted(used)
+        all_there = bool(self.present.all())
+        used = self.columns if all_there else np.where(self.present[:, :, None], self.columns, 0.0)
+        weighted = self._weighted(used, self.changing)
         return weighted, summed(used, weighted)
 
     @cached_property
@@ -237,8 +253,11 @@ class DayGaussian:
     @cached_property
     def own_log_determinant(self) -> float:
         """Logarithm of the determinant of the blocks alone. [-]"""
-        blocks, _, which = self._alike
-        return float(np.linalg.slogdet(blocks)[1][which].sum())
+        blocks, _, groups = self._alike
+        each = np.empty(len(self.present))
+        for days, value in zip(groups, np.linalg.slogdet(blocks)[1], strict=True):
+            each[days] = value
+        return float(each.sum())
 
     @cached_property
     def covariance(self) -> Floats:
@@ -268,30 +287,39 @@ class DayGaussian:
         solution = self._weighted(wide) - weighted @ (self.covariance @ inner)
         return np.asarray(solution if values.ndim == 3 else solution[:, :, 0])
 
-    def quadratic(self, values: Floats) -> Floats:
-        """Compute ``V' Omega^-1 V`` of values V (D, n, k), shape (k, k); those of other experiments are zero."""
+    def quadratic(self, values: Floats, *, constant: bool = False) -> Floats:
+        """Compute ``V' Omega^-1 V`` of values V (D, n, k), shape (k, k), perhaps the same on all days.
+
+        Values of other experiments are zero.
+        """
         inner = summed(self._shared[0], values)
-        return summed(values, self._weighted(values)) - inner.T @ self.covariance @ inner
+        own = summed(values, self._weighted(values, 0 if constant else None))
+        return np.asarray(own - inner.T @ self.covariance @ inner)
+
+    @property
+    def inverses_of_days(self) -> Floats:
+        """Inverses of the blocks alone, zero where nothing is there, shape (D, n, n). [1/unit^2]"""
+        inverses = np.empty(self.blocks.shape)
+        for inverse, days in zip(self._inverses, self._alike[2], strict=True):
+            inverses[days] = inverse
+        return inverses
 
     @cached_property
     def inverse_blocks(self) -> Floats:
         """Blocks of the days of the inverse of the whole covariance, shape (D, n, n). [1/unit^2]"""
-        weighted, blocks = self._shared[0], np.empty(self.blocks.shape)
-        for inverse, days in zip(*self._inverses, strict=True):
-            blocks[days] = inverse
-        return np.asarray(blocks - (weighted @ self.covariance) @ np.swapaxes(weighted, 1, 2))
+        weighted = self._shared[0]
+        return np.asarray(self.inverses_of_days - (weighted @ self.covariance) @ np.swapaxes(weighted, 1, 2))
 
     @cached_property
     def sum_of_inverse_blocks(self) -> Floats:
         """Sum of `inverse_blocks` over the days, shape (n, n). [1/unit^2]"""
-        weighted = self._shared[0]
-        size = weighted.shape[1]
-        total = np.zeros((size, size))
-        for inverse, days in zip(*self._inverses, strict=True):
-            total += len(days) * inverse
-        by_value = np.swapaxes(weighted, 0, 1).reshape(size, -1)
-        explained = np.swapaxes(weighted @ self.covariance, 0, 1).reshape(size, -1)
-        return np.asarray(total - explained @ by_value.T)
+        days, size, _ = self._shared[0].shape
+        total, count = np.zeros((size, size)), np.arange(days)
+        for inverse, of_group in zip(self._inverses, self._alike[2], strict=True):
+            total += len(count[of_group]) * inverse
+        explained = self._shared[0] @ np.linalg.cholesky(self.covariance)
+        by_value = np.swapaxes(explained, 0, 1).reshape(size, -1)
+        return np.asarray(total - by_value @ by_value.T)
 
     def log_density(self, values: Floats) -> float:
         """Return the logarithm of the density of values (D, n)."""
@@ -471,5 +499,6 @@ def inverted(blocks: Floats) -> Floats:
             general = np.linalg.inv(block)
             inverse[k] = 0.5 * (general + general.T)
         else:
-            inverse[k] = np.tril(lower) + np.tril(lower, -1).T
+            inverse[k] = lower + lower.T  # what is above the diagonal was set to zero
+            inverse[k].flat[:: len(block) + 1] *= 0.5
     return inverse

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -167,9 +167,17 @@ def alike_days(days: int, persistence: float) -> float:
 
 
 def drift_kernel(grid: DayGrid, hours: float) -> Floats:
-    """Correlation between the slots of a day, shape (H, H). [-]"""
-    apart = np.abs(np.subtract.outer(np.arange(grid.slots), np.arange(grid.slots))) * grid.slot_hours
-    return np.asarray(np.exp(-apart / hours))
+    """Correlation between the slots of a day, shape (H, H), read-only. [-]"""
+    return _kernel(grid.slots, grid.slot_hours, hours)
+
+
+@lru_cache(maxsize=16)
+def _kernel(slots: int, slot_hours: float, hours: float) -> Floats:
+    """The same; asked for in each iteration."""
+    apart = np.abs(np.subtract.outer(np.arange(slots), np.arange(slots))) * slot_hours
+    kernel = np.asarray(np.exp(-apart / hours))
+    kernel.flags.writeable = False
+    return kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,6 +217,11 @@ class DayData:
         """Columns of the error that repeats for each function and sensor, (D, H * S, m * S). [-]"""
         return self.repeating(np.eye(self.sensors))
 
+    @cached_property
+    def regular(self) -> bool:
+        """Whether everything is there, and the error that repeats has the same columns on all days."""
+        return bool(self.present.all() and (self.basis == self.basis[:1]).all())
+
     def repeating(self, root: Floats) -> Floats:
         """Columns of the error that repeats, (D, H * S, m * S), from a root of its covariance (S, S)."""
         days, size, functions = self.basis.shape
@@ -224,7 +237,9 @@ class DayData:
             shared.append(np.broadcast_to(rows, (self.grid.days, *rows.shape)))
         columns = np.concatenate(shared, axis=2)
         block = covariances.block(self.grid)
-        return DayGaussian(np.broadcast_to(block, (self.grid.days, *block.shape)), columns, self.present)
+        blocks = np.broadcast_to(block, (self.grid.days, *block.shape))
+        changing = self.effects.shape[2] if self.regular else None
+        return DayGaussian(blocks, columns, self.present, changing=changing)
 
 
 def columns_of(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> list[Indices]:
@@ -269,7 +284,7 @@ def together(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> Exp
     for gaussian, part_columns in zip(alone, columns_by_part, strict=True):
         columns = np.zeros((*gaussian.columns.shape[:2], size))
         columns[:, :, part_columns] = gaussian.columns
-        wide.append(replace(gaussian, columns=columns))
+        wide.append(replace(gaussian, columns=columns, changing=None))
     return Experiments(wide)
 
 
@@ -411,7 +426,7 @@ def _improved(
     inverse = now.sum_of_inverse_blocks.reshape(grid.slots, sensors, grid.slots, sensors)
     improved: dict[str, Any] = {}
     of_hour = (solved.ravel() @ data.functions.reshape(solved.size, -1)).reshape(-1, sensors)
-    spread = now.quadratic(data.functions)
+    spread = now.quadratic(data.functions, constant=data.regular)
     for name, kernel in kernels.items():
         square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
         trace = np.einsum("hsgt,hg->st", inverse, kernel)
