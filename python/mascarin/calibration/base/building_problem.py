@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]
+
+
+#: Calls whose series are kept: a point, and those about it.
+_LATEST: Final = 2
 
 
 def fit_parameter(
@@ -119,7 +123,7 @@ class BuildingModel:
     paths: tuple[str, ...]
     rows: npt.NDArray[np.int64]
     columns: tuple[int, ...]
-    #: Series of the last vectors: the first linearization with errors is that of the intervals without them.
+    #: Series of the last calls: the first linearization with errors is that of the intervals without them.
     _latest: dict[bytes, Array] = field(default_factory=dict, init=False, repr=False)
 
     def __call__(self, x: Array) -> Array:
@@ -133,7 +137,8 @@ class BuildingModel:
             records, _, _ = self.simulation.ensemble(vectors)
             series = self._compared(records)
             series.flags.writeable = False
-            self._latest.clear()
+            while len(self._latest) >= _LATEST:
+                self._latest.pop(next(iter(self._latest)))
             self._latest[key] = series
         return self._latest[key]
 
