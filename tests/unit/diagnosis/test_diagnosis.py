@@ -276,7 +276,8 @@ def test_information_is_that_of_the_dense_covariance_where_the_columns_are_large
         along = span.T @ signature
         across = signature - span @ along
         expected = float(across @ across + np.sum(along**2 / (1.0 + size**2)))
-        assert found[k] == pytest.approx(expected, rel=1e-4, abs=1e-5)
+        alone = float(signature @ signature)  # from which the known effects take nearly everything
+        assert found[k] == pytest.approx(expected, rel=1e-4, abs=1e-7 * alone)
 
 
 def test_what_is_named_is_within_the_records_that_are_simulated_next() -> None:
