@@ -1,4 +1,4 @@
-"""Sums over the days of a distribution by day are those of the dense matrices; draws do not hang on round-off."""
+"""Sums over the days of a distribution are those of dense matrices; draws do not hang on round-off."""
 
 from __future__ import annotations
 

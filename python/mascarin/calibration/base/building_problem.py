@@ -169,7 +169,7 @@ class BuildingModel:
         return replace(
             whole,
             times=whole.times[self.rows],
-            measured=whole.measured[np.ix_(self.rows, columns)],
+            measured=whole.measured[self.rows][:, columns],
             kinds=tuple(whole.kinds[s] for s in columns),
             names=tuple(whole.names[s] for s in columns),
         )

@@ -412,8 +412,8 @@ def _cholesky(total: Floats) -> Floats:
 def _eigenvectors(symmetric: Floats) -> tuple[Floats, Floats]:
     """Eigenvalues (n,) and eigenvectors (n, n), the largest component of each positive.
 
-    Errors are drawn along them. Signs that depend on round-off would give other draws of the same distribution
-    on other machines.
+    Errors are drawn along them. Signs that depend on round-off would give other draws of the same
+    distribution on other machines.
     """
     value, vectors = np.linalg.eigh(symmetric)
     largest = np.abs(vectors).argmax(axis=0)

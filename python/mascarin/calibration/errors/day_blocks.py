@@ -201,7 +201,10 @@ class DayGaussian:
         return inverses if patterns.all() else inverses * (patterns[:, :, None] & patterns[:, None, :])
 
     def _weighted(self, values: Floats, changing: int | None = None) -> Floats:
-        """Multiply values (D, n, k), of which the first may differ, with the inverses of the blocks. [1/unit^2]"""
+        """Multiply values (D, n, k) with the inverses of the blocks. [1/unit^2]
+
+        `changing`: number of the first columns that differ between days; all when absent.
+        """
         weighted, first = np.empty(values.shape), values.shape[2] if changing is None else changing
         for inverse, days in zip(self._inverses, self._alike[2], strict=True):
             part = values[days]

@@ -21,9 +21,7 @@ _IDLE_STEPS: Final = 6
 _MIN_COST_DECREASE: Final = 1e-7
 #: Rows of one block of the QR decomposition.
 _BLOCK_ROWS: Final = 256
-_NO_DERIVATIVE: Final = (
-    "the model cannot be evaluated near the minimum: the uncertainty cannot be estimated"
-)
+_NO_DERIVATIVE: Final = "the model cannot be evaluated near the minimum: the uncertainty cannot be estimated"
 
 
 class _Idle(Exception):
