@@ -157,8 +157,7 @@ class DayGaussian:
     elsewhere : ndarray, shape (q, q), optional
         Precision of the coefficients from the values of other experiments, see `Experiments`. [-]
     changing : int, optional
-        Number of the first columns that may differ between days; all others are the same on all days. All
-        columns when absent. [-]
+        Number of the first columns that may differ between days; all columns when absent. [-]
 
     Examples
     --------
@@ -216,8 +215,8 @@ class DayGaussian:
     @cached_property
     def _added(self) -> tuple[Floats, Floats]:
         """``B^-1 U``, and ``U' B^-1 U``: what these values add to the precision of the coefficients."""
-        all_there = bool(self.present.all())
-        used = self.columns if all_there else np.where(self.present[:, :, None], self.columns, 0.0)
+        present = self.present[:, :, None]
+        used = self.columns if present.all() else np.where(present, self.columns, 0.0)
         weighted = self._weighted(used, self.changing)
         return weighted, summed(used, weighted)
 
@@ -257,10 +256,8 @@ class DayGaussian:
     def own_log_determinant(self) -> float:
         """Logarithm of the determinant of the blocks alone. [-]"""
         blocks, _, groups = self._alike
-        each = np.empty(len(self.present))
-        for days, value in zip(groups, np.linalg.slogdet(blocks)[1], strict=True):
-            each[days] = value
-        return float(each.sum())
+        values = np.linalg.slogdet(blocks)[1]
+        return float(sum(len(self.present[days]) * value for days, value in zip(groups, values, strict=True)))
 
     @cached_property
     def covariance(self) -> Floats:
@@ -291,13 +288,9 @@ class DayGaussian:
         return np.asarray(solution if values.ndim == 3 else solution[:, :, 0])
 
     def quadratic(self, values: Floats, *, constant: bool = False) -> Floats:
-        """Compute ``V' Omega^-1 V`` of values V (D, n, k), shape (k, k), perhaps the same on all days.
-
-        Values of other experiments are zero.
-        """
-        inner = summed(self._shared[0], values)
-        own = summed(values, self._weighted(values, 0 if constant else None))
-        return np.asarray(own - inner.T @ self.covariance @ inner)
+        """Compute ``V' Omega^-1 V`` of values (D, n, k), zero elsewhere; `constant`: those of all days."""
+        inner, weighted = summed(self._shared[0], values), self._weighted(values, 0 if constant else None)
+        return np.asarray(summed(values, weighted) - inner.T @ self.covariance @ inner)
 
     @property
     def inverses_of_days(self) -> Floats:
@@ -316,10 +309,10 @@ class DayGaussian:
     @cached_property
     def sum_of_inverse_blocks(self) -> Floats:
         """Sum of `inverse_blocks` over the days, shape (n, n). [1/unit^2]"""
-        days, size, _ = self._shared[0].shape
-        total, count = np.zeros((size, size)), np.arange(days)
-        for inverse, of_group in zip(self._inverses, self._alike[2], strict=True):
-            total += len(count[of_group]) * inverse
+        size = self.present.shape[1]
+        total = np.zeros((size, size))
+        for inverse, days in zip(self._inverses, self._alike[2], strict=True):
+            total += len(self.present[days]) * inverse
         explained = self._shared[0] @ np.linalg.cholesky(self.covariance)
         by_value = np.swapaxes(explained, 0, 1).reshape(size, -1)
         return np.asarray(total - by_value @ by_value.T)

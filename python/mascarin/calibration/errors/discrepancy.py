@@ -173,10 +173,9 @@ def drift_kernel(grid: DayGrid, hours: float) -> Floats:
 
 @lru_cache(maxsize=16)
 def _kernel(slots: int, slot_hours: float, hours: float) -> Floats:
-    """The same; asked for in each iteration."""
     apart = np.abs(np.subtract.outer(np.arange(slots), np.arange(slots))) * slot_hours
     kernel = np.asarray(np.exp(-apart / hours))
-    kernel.flags.writeable = False
+    kernel.flags.writeable = False  # asked for in each iteration
     return kernel
 
 
@@ -237,9 +236,8 @@ class DayData:
             shared.append(np.broadcast_to(rows, (self.grid.days, *rows.shape)))
         columns = np.concatenate(shared, axis=2)
         block = covariances.block(self.grid)
-        blocks = np.broadcast_to(block, (self.grid.days, *block.shape))
-        changing = self.effects.shape[2] if self.regular else None
-        return DayGaussian(blocks, columns, self.present, changing=changing)
+        blocks, changing = np.broadcast_to(block, (self.grid.days, *block.shape)), self.effects.shape[2]
+        return DayGaussian(blocks, columns, self.present, changing=changing if self.regular else None)
 
 
 def columns_of(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> list[Indices]:
