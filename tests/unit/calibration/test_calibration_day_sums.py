@@ -9,8 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin.calibration.errors.covariance_sampling import sample_covariances
-from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, Experiments, inverted
+from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, Experiments
 from mascarin.calibration.errors.discrepancy import DayData, Discrepancy, SizeLimits, hour_basis
+from mascarin.linear_algebra import inverted
 
 Floats = NDArray[np.float64]
 

@@ -22,10 +22,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+from mascarin.linear_algebra import inverted
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -109,15 +111,22 @@ class DayGrid:
             Number of samples. [-]
         """
         sensors = mask.shape[1]
-        count = np.zeros((self.days, self.slots, sensors), dtype=np.int64)
-        np.add.at(count, (self.day, self.slot), mask)
         wide = mask.reshape(*mask.shape, *(1,) * (values.ndim - 2))
-        total = np.zeros((self.days, self.slots, *values.shape[1:]))
-        np.add.at(total, (self.day, self.slot), np.where(wide, values, 0.0))
+        count, total = self._total(mask.astype(np.int64)), self._total(np.where(wide, values, 0.0))
         divisor = np.maximum(count, 1).reshape(*count.shape, *(1,) * (values.ndim - 2))
         size = self.slots * sensors
         mean = (total / divisor).reshape(self.days, size, *values.shape[2:])
         return mean, count.reshape(self.days, size)
+
+    def _total(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Sum samples (T, ...) over the slots, shape (D, H, ...)."""
+        number = self.day * self.slots + self.slot
+        order = np.argsort(number, kind="stable")
+        first = np.flatnonzero(np.diff(number[order], prepend=-1))
+        total = np.zeros((self.days * self.slots, *values.shape[1:]), dtype=values.dtype)
+        if first.size:
+            total[number[order[first]]] = np.add.reduceat(values[order], first, axis=0)
+        return total.reshape(self.days, self.slots, *values.shape[1:])
 
     def within(self, values: Floats, mask: Flags) -> Floats:
         """Return the mean square of the distances of samples (T, S) from the means of their slots, (S,)."""
@@ -464,37 +473,3 @@ def summed(first: Floats, second: Floats) -> Floats:
     """
     flat = first.reshape(-1, first.shape[2])
     return np.asarray(flat.T @ second.reshape(-1, second.shape[2]))
-
-
-def inverted(blocks: Floats) -> Floats:
-    """Invert symmetric matrices (k, n, n).
-
-    Parameters
-    ----------
-    blocks : ndarray, shape (k, n, n)
-        Positive definite.
-
-    Returns
-    -------
-    ndarray, shape (k, n, n)
-        Symmetric.
-
-    Examples
-    --------
-    >>> inverted(np.diag([2.0, 4.0])[None])[0]
-    array([[0.5 , 0.  ],
-           [0.  , 0.25]])
-    """
-    from scipy.linalg import lapack
-
-    inverse = np.empty(blocks.shape)
-    for k, block in enumerate(blocks):
-        root, failed = lapack.dpotrf(block, lower=True)
-        lower, singular = lapack.dpotri(root, lower=True) if not failed else (root, failed)
-        if failed or singular:  # not positive definite to round-off
-            general = np.linalg.inv(block)
-            inverse[k] = 0.5 * (general + general.T)
-        else:
-            inverse[k] = lower + lower.T  # what is above the diagonal was set to zero
-            inverse[k].flat[:: len(block) + 1] *= 0.5
-    return inverse
