@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io import atomic
 from mascarin.errors import InputError
@@ -83,18 +83,16 @@ def _write_once(figure: Figure, file: io.BytesIO, kind: str) -> None:
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
-    before = figure.canvas, figure.dpi
+    before, canvas = (figure.canvas, figure.dpi), FigureCanvasSVG if kind == "svg" else FigureCanvasPdf
+    now: Any = canvas(figure)
     engine = figure.get_layout_engine()
     if engine is not None:
-        FigureCanvasSVG(figure)  # texts are as long as in the file
-        figure.dpi = FigureCanvasSVG.fixed_dpi
+        figure.dpi = now.fixed_dpi  # texts are as long as in the file
         engine.execute(figure)
         figure.set_layout_engine("none")  # the places are found, also for further files
     figure.dpi = _DPI
-    if kind == "svg":
-        FigureCanvasSVG(figure).print_svg(file, metadata={"Date": None})
-    else:
-        FigureCanvasPdf(figure).print_pdf(file, metadata={"CreationDate": None})
+    metadata = {"Date" if kind == "svg" else "CreationDate": None}
+    (now.print_svg if kind == "svg" else now.print_pdf)(file, metadata=metadata)
     figure.set_canvas(before[0])
     figure.dpi = before[1]
 
