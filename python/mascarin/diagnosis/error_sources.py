@@ -344,8 +344,8 @@ def _lowest(matrix: Floats, right: Floats, low: Floats, high: Floats) -> Floats:
     parts = list(zip(diagonal, low.tolist(), high.tolist(), matrix, strict=True))
     for _ in range(_MAX_SWEEPS):
         largest = 0.0
-        for k, (own, lowest, highest, row) in enumerate(parts):
-            moved = min(max(c[k] + slope.item(k) / own, lowest), highest) - c[k]
+        for k, (curvature, lowest, highest, row) in enumerate(parts):
+            moved = min(max(c[k] + slope.item(k) / curvature, lowest), highest) - c[k]
             if moved != 0.0:
                 c[k] += moved
                 slope -= moved * row

@@ -163,19 +163,19 @@ class BuildingModel:
         )
 
     @cached_property
-    def _seen(self) -> Observation:
+    def _observation_compared(self) -> Observation:
         """The observation at the instants and of the sensors to compare."""
-        whole, columns = self.observation, list(self.columns)
+        observation, columns = self.observation, list(self.columns)
         return replace(
-            whole,
-            times=whole.times[self.rows],
-            measured=whole.measured[self.rows][:, columns],
-            kinds=tuple(whole.kinds[s] for s in columns),
-            names=tuple(whole.names[s] for s in columns),
+            observation,
+            times=observation.times[self.rows],
+            measured=observation.measured[self.rows][:, columns],
+            kinds=tuple(observation.kinds[s] for s in columns),
+            names=tuple(observation.names[s] for s in columns),
         )
 
     def _compared(self, records: Array) -> Array:
-        return self._seen.simulated(self.simulation.index, records[..., list(self.columns)])
+        return self._observation_compared.simulated(self.simulation.index, records[..., list(self.columns)])
 
 
 def problem_of(
