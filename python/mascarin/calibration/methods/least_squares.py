@@ -212,7 +212,7 @@ def _hypercube(problem: CalibrationProblem, count: int, seed: int) -> Iterator[F
 
 def exact(problem: CalibrationProblem, evaluator: Evaluator, z: Floats) -> Floats:
     """Compute exact derivatives of residuals by positions z (P,), shape (T, S, P). [unit of the sensor]"""
-    return np.asarray(evaluator.slopes(problem.values(z[None])[0]) * problem.rates(z))
+    return np.ascontiguousarray(evaluator.slopes(problem.values(z[None])[0]) * problem.rates(z))
 
 
 def residuals_and_derivatives(
@@ -252,4 +252,5 @@ def derivative(problem: CalibrationProblem, z: Floats, difference: float) -> tup
     if not np.isfinite(values).all():
         raise SolverError(_NO_DERIVATIVE)
     jacobian = (values[:n] - values[n:]) / (ahead - behind)[:, None, None]
-    return middle, np.moveaxis(jacobian, 0, -1)
+    # As it is when it is read again: products depend in the last digits on the order in memory.
+    return middle, np.ascontiguousarray(np.moveaxis(jacobian, 0, -1))
