@@ -140,10 +140,18 @@ class Hypotheses:
         flat = weighted.reshape(size, -1)
         parts = [self._signatures.T @ flat]
         for number, slots in self.families:
-            products = self._signatures[:, number, None] * flat
-            of_slot = products.reshape(self._hours.size, -1, flat.shape[1]).sum(axis=1)
-            parts.append(_from_end(of_slot)[slots])
+            parts.append(_from_end(self._of_slots(number, flat))[slots])
         return np.concatenate(parts)
+
+    def _of_slots(self, number: int, values: Floats) -> Floats:
+        """Products of a signature with values (D * H * S, m), summed over the sensors, shape (D * H, m)."""
+        signature = self._signatures[:, number].reshape(self._hours.size, -1)
+        by_sensor = values.reshape(*signature.shape, -1)
+        total = np.zeros((len(signature), values.shape[1]))
+        # That of a fault of a sensor is zero for all others.
+        for s in np.flatnonzero(signature.any(axis=0)):
+            total += signature[:, s, None] * by_sensor[:, s]
+        return total
 
     @cached_property
     def _signatures(self) -> Floats:
@@ -159,11 +167,9 @@ class Hypotheses:
             Distribution of the residuals without a cause.
         """
         present = gaussian.present
-        columns = np.where(present[:, :, None], gaussian.columns, 0.0)
-        root = np.linalg.cholesky(gaussian.covariance)
-        # C^-1 = blocks' inverses - shared shared', from what the distribution offers.
-        shared = gaussian.solve(columns) @ gaussian.precision @ root
-        inverse = gaussian.inverse_blocks + shared @ np.swapaxes(shared, 1, 2)
+        # C^-1 = inverses of the blocks - shared shared', which is how the distribution has it.
+        shared = gaussian.weighted_columns @ np.linalg.cholesky(gaussian.covariance)
+        inverse = gaussian.inverses_of_days
         shape, flat = present.shape, shared.reshape(present.size, -1)
         signatures = self._signatures.reshape(*shape, -1)
         information = [
@@ -172,7 +178,7 @@ class Hypotheses:
         ]
         for number, slots in self.families:
             signature = self._signatures[:, number]
-            across = (signature[:, None] * flat).reshape(self._hours.size, -1, flat.shape[1]).sum(axis=1)
+            across = self._of_slots(number, flat)
             square = np.sum(_from_end(across)[slots] ** 2, axis=1)
             information.append(
                 _blocks_from_end(inverse, signature.reshape(shape), self.grid.slots)[slots] - square

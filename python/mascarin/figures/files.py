@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io import atomic
 from mascarin.errors import InputError
@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS: Final = (".svg", ".png", ".pdf")
+#: Resolution of pictures, and of what is a picture in a drawing. [1/inch]
+_DPI: Final = 150
 
 
 def require_format(path: Path, option: str) -> None:
@@ -68,11 +70,31 @@ def save(figure: Figure, path: Path) -> Path:
     kind = path.suffix.lower().removeprefix(".")
     file = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "mascarin", "svg.fonttype": "none"}):
-        figure.savefig(
-            file, format=kind, dpi=150, metadata={"Date" if kind == "svg" else "CreationDate": None}
-        )
+        if kind in ("svg", "pdf"):
+            _write_once(figure, file, kind)
+        else:
+            figure.savefig(file, format=kind, dpi=_DPI, metadata={"CreationDate": None})
     path.parent.mkdir(parents=True, exist_ok=True)
     return atomic.write(path, file.getvalue())
+
+
+def _write_once(figure: Figure, file: io.BytesIO, kind: str) -> None:
+    """Write a figure as SVG or PDF and draw it once; `savefig` draws it twice if it has a layout."""
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    before, canvas = (figure.canvas, figure.dpi), FigureCanvasSVG if kind == "svg" else FigureCanvasPdf
+    now: Any = canvas(figure)
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        figure.dpi = now.fixed_dpi  # texts are as long as in the file
+        engine.execute(figure)
+        figure.set_layout_engine("none")  # the places are found, also for further files
+    figure.dpi = _DPI
+    metadata = {"Date" if kind == "svg" else "CreationDate": None}
+    (now.print_svg if kind == "svg" else now.print_pdf)(file, metadata=metadata)
+    figure.set_canvas(before[0])
+    figure.dpi = before[1]
 
 
 def save_both(figure: Figure, path: Path) -> list[Path]:
@@ -97,6 +119,4 @@ def save_both(figure: Figure, path: Path) -> list[Path]:
     >>> [file.name for file in save_both(Figure(), Path(tempfile.mkdtemp()) / "empty")]
     ['empty.svg', 'empty.pdf']
     """
-    first = save(figure, path.with_name(f"{path.name}.svg"))
-    figure.set_layout_engine("none")  # the places are found
-    return [first, save(figure, path.with_name(f"{path.name}.pdf"))]
+    return [save(figure, path.with_name(f"{path.name}.{kind}")) for kind in ("svg", "pdf")]

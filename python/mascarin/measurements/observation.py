@@ -207,8 +207,10 @@ def instants(records: Array, position: Array) -> Array:
     position = np.where(np.abs(position - nearest) < 1e-6, nearest, position)
     inside = (position >= 0.0) & (position <= rows - 1)
     lower = np.clip(np.floor(position).astype(np.int64), 0, rows - 1)
-    upper = np.minimum(lower + 1, rows - 1)
     weight = position - lower
+    if inside.all() and not weight.any():  # records of these instants: nothing to interpolate
+        return np.asarray(records[..., lower])
+    upper = np.minimum(lower + 1, rows - 1)
     mixed = records[..., lower] * (1.0 - weight) + records[..., upper] * weight
     return np.where(inside, mixed, np.nan)
 

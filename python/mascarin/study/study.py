@@ -335,7 +335,6 @@ class Study:
             study.write(workspace.out / "report.html", *read_folder(workspace.out))
             workspace.record("study", written)
             workspace.drop("sensitivity")
-            workspace.drop("diagnosis")
             workspace.drop(NAME)
         return results
 

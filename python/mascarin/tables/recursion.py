@@ -34,12 +34,14 @@ def recursion(coefficients: Array, driving: Array) -> Array:
     [1.0, 0.5, 0.25]
     """
     # A tenth of the time that scipy.signal takes to be imported for this.
-    from scipy.linalg import solve_banded
+    from scipy.linalg import lapack
 
     size = len(driving)
-    bands = np.zeros((len(coefficients) + 1, size))
+    if not size or not driving.size:
+        return np.array(driving)
+    bands = np.zeros((len(coefficients) + 1, size), order="F")
     bands[0] = 1.0
     for lag, weight in enumerate(coefficients[: size - 1], start=1):
         bands[lag, : size - lag] = -weight
-    columns = driving.reshape(size, -1)
-    return np.asarray(solve_banded((len(bands) - 1, 0), bands, columns)).reshape(driving.shape)
+    series, _ = lapack.dtbtrs(bands, driving.reshape(size, -1), uplo="L", diag="U")
+    return np.asarray(series).reshape(driving.shape)

@@ -262,6 +262,24 @@ def test_scores_and_information_of_all_beginnings_are_those_of_their_signatures(
         assert zero.information[int(k)] == pytest.approx(float(np.sum(weighted * signature)), rel=1e-6)
 
 
+def test_information_is_that_of_the_dense_covariance_where_the_columns_are_large() -> None:
+    """Known effects that take nearly all: what is left is not lost to round-off."""
+    hypotheses, gaussian, _ = _tools()
+    wide = replace(gaussian, columns=100.0 * gaussian.columns)
+    columns = wide.columns.reshape(wide.present.size, -1)
+    root = np.linalg.cholesky(wide.blocks[0])
+    white = np.linalg.solve(root, columns.reshape(*wide.columns.shape)).reshape(columns.shape)
+    span, size, _ = np.linalg.svd(white, full_matrices=False)
+    found = hypotheses.information(wide)
+    for k in [*range(len(hypotheses.whole)), len(hypotheses.whole) + 3, hypotheses.count - 1]:
+        signature = np.linalg.solve(root, hypotheses.candidate(k).signature[:, :, None]).ravel()
+        along = span.T @ signature
+        across = signature - span @ along
+        expected = float(across @ across + np.sum(along**2 / (1.0 + size**2)))
+        alone = float(signature @ signature)  # from which the known effects take nearly everything
+        assert found[k] == pytest.approx(expected, rel=1e-4, abs=1e-6 * alone)
+
+
 def test_what_is_named_is_within_the_records_that_are_simulated_next() -> None:
     # Scores given a candidate are those with its column in the covariance.
     hypotheses, gaussian, zero = _tools()

@@ -5,12 +5,13 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from mascarin.errors import InputError
-from mascarin.figures.files import save
+from mascarin.figures.files import save, save_both
 from mascarin.sensitivity import files
 from mascarin.sensitivity.base.factors import Factor
 from mascarin.sensitivity.spectral import SpectralSensitivity, analyze, design
@@ -85,6 +86,28 @@ def test_same_figure_same_bytes(result: SpectralSensitivity, tmp_path: Path) -> 
     second = save(files.tornado(result, "gap.air"), tmp_path / "b.svg").read_bytes()
     assert first == second
     assert not list(tmp_path.glob("*.part"))
+
+
+def test_a_figure_with_a_layout_has_the_bytes_of_matplotlib(tmp_path: Path) -> None:
+    """Its parts are placed once and drawn once; `savefig` places them and draws all twice."""
+
+    def figure() -> Figure:
+        drawn = Figure(figsize=(7.0, 4.0), layout="constrained")
+        upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+        (line,) = upper.plot(HOURS, 1e5 * np.sin(HOURS / 4.0), label="heat")
+        lower.plot(HOURS, np.cos(HOURS / 4.0))
+        upper.set_title("a title", loc="left")
+        lower.set_xlabel("local time")
+        drawn.legend(handles=[line], loc="outside lower left", frameon=False)
+        return drawn
+
+    for kind, date in (("svg", "Date"), ("pdf", "CreationDate")):
+        with mpl.rc_context({"svg.hashsalt": "mascarin", "svg.fonttype": "none"}):
+            figure().savefig(tmp_path / f"expected.{kind}", dpi=150, metadata={date: None})
+        expected = (tmp_path / f"expected.{kind}").read_bytes()
+        assert save(figure(), tmp_path / f"one.{kind}").read_bytes() == expected
+    both = save_both(figure(), tmp_path / "both")
+    assert both[0].read_bytes() == (tmp_path / "expected.svg").read_bytes()
 
 
 def test_errors_of_hours(result: SpectralSensitivity) -> None:

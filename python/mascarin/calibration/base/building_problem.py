@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]
+
+
+#: Calls whose series are kept: a point, and those about it.
+_LATEST: Final = 2
 
 
 def fit_parameter(
@@ -118,7 +123,7 @@ class BuildingModel:
     paths: tuple[str, ...]
     rows: npt.NDArray[np.int64]
     columns: tuple[int, ...]
-    #: Series of the last vectors: the first linearization with errors is that of the intervals without them.
+    #: Series of the last calls: the first linearization with errors is that of the intervals without them.
     _latest: dict[bytes, Array] = field(default_factory=dict, init=False, repr=False)
 
     def __call__(self, x: Array) -> Array:
@@ -132,7 +137,8 @@ class BuildingModel:
             records, _, _ = self.simulation.ensemble(vectors)
             series = self._compared(records)
             series.flags.writeable = False
-            self._latest.clear()
+            while len(self._latest) >= _LATEST:
+                self._latest.pop(next(iter(self._latest)))
             self._latest[key] = series
         return self._latest[key]
 
@@ -156,9 +162,20 @@ class BuildingModel:
             k for k, parameter in enumerate(parameters) if path in (parameter.path, *parameter.members)
         )
 
+    @cached_property
+    def _observation_compared(self) -> Observation:
+        """The observation at the instants and of the sensors to compare."""
+        observation, columns = self.observation, list(self.columns)
+        return replace(
+            observation,
+            times=observation.times[self.rows],
+            measured=observation.measured[self.rows][:, columns],
+            kinds=tuple(observation.kinds[s] for s in columns),
+            names=tuple(observation.names[s] for s in columns),
+        )
+
     def _compared(self, records: Array) -> Array:
-        series = self.observation.simulated(self.simulation.index, records)
-        return series[:, self.rows][:, :, list(self.columns)]
+        return self._observation_compared.simulated(self.simulation.index, records[..., list(self.columns)])
 
 
 def problem_of(

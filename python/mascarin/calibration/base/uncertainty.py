@@ -157,7 +157,7 @@ def estimate(
     r = np.where(mask, residuals, np.nan)
     models = tuple(fit_autoregressions(r.T))
     wj = weights[:, :, None] * j
-    information = np.einsum("tsp,tsq->pq", wj, j) + np.diag(priors)
+    information = _summed(wj, j) + np.diag(priors)
     effective = tuple(m.effective_samples for m in models)
     freedom = max(sum(effective) - z.size, 1.0)
     # The fit has reduced the residuals: it used as many degrees of freedom as there are parameters. A prior
@@ -236,7 +236,7 @@ class _Noise:
         """
         filtered = self.response(np.concatenate([wj[::-1], np.zeros((self.memory, *wj.shape[1:]))]))
         shape = (-1, wj.shape[2])
-        mixed = np.einsum("su,tuq->tsq", self.innovation, filtered)
+        mixed = self.innovation @ filtered
         return np.asarray(filtered.reshape(shape).T @ mixed.reshape(shape))
 
     def draw(self, times: int, count: int) -> Floats:
@@ -244,7 +244,7 @@ class _Noise:
         value, vector = np.linalg.eigh(self.innovation)
         root = vector * np.sqrt(np.maximum(value, 0.0))
         normal = np.random.default_rng(_SEED).standard_normal((times + self.memory, len(self.models), count))
-        return self.response(np.einsum("su,tuk->tsk", root, normal))[self.memory :]
+        return self.response(root @ normal)[self.memory :]
 
 
 def _drawn_quantile(
@@ -253,13 +253,13 @@ def _drawn_quantile(
     """Quantile of error over estimated standard deviation in simulated fits, shape (P,). [-]"""
     if not np.any(np.diag(noise.innovation) > 0.0):
         return np.zeros(j.shape[2])
-    information = np.einsum("tsp,tsq->pq", wj, j) + np.diag(priors)
+    information = _summed(wj, j) + np.diag(priors)
     inverse, _ = _inverted(information)
     true = _diagonal(inverse, noise.middle(wj) + np.diag(priors))
     errors = noise.draw(j.shape[0], _SIMULATED_FITS)
     of_priors = np.random.default_rng(_SEED + 1).standard_normal((priors.size, _SIMULATED_FITS))
-    change = -inverse @ (np.einsum("tsp,tsk->pk", wj, errors) + np.sqrt(priors)[:, None] * of_priors)
-    fit_residuals = errors + np.einsum("tsp,pk->tsk", j, change)
+    change = -inverse @ (_summed(wj, errors) + np.sqrt(priors)[:, None] * of_priors)
+    fit_residuals = errors + j @ change
     ratio = np.ones_like(change)
     remaining = np.where(mask[:, :, None], fit_residuals, np.nan)
     sensors = mask.shape[1]
@@ -274,8 +274,13 @@ def _drawn_quantile(
     return _widened(ratio, confidence)
 
 
+def _summed(first: Floats, second: Floats) -> Floats:
+    """Sum of the products of columns over all samples, (T, S, p) and (T, S, k), shape (p, k)."""
+    return np.asarray(first.reshape(-1, first.shape[2]).T @ second.reshape(-1, second.shape[2]))
+
+
 def _diagonal(inverse: Floats, middle: Floats) -> Floats:
-    return np.asarray(np.einsum("ip,pq,iq->i", inverse, middle, inverse))
+    return np.asarray(np.sum((inverse @ middle) * inverse, axis=1))
 
 
 def _widened(ratio: Floats, confidence: float) -> Floats:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.errors.day_blocks import product
+from mascarin.calibration.errors.day_blocks import summed
 
 if TYPE_CHECKING:
     from mascarin.calibration.errors.day_blocks import DayGaussian, Experiments
@@ -88,4 +88,4 @@ def _of_block(
     weighted, columns = part.weighted_columns[block], np.where(present[:, :, None], part.columns[block], 0.0)
     remaining = np.where(present, values[block] - columns @ coefficients, 0.0)
     score = np.einsum("dnq,dn->q", weighted, remaining)
-    return score, product(np.swapaxes(columns, 1, 2), weighted).sum(axis=0)
+    return score, summed(columns, weighted)

@@ -167,6 +167,8 @@ def _moved(
     ndarray, shape (q, q)
         A root of their covariance.
     """
+    from scipy.linalg import lapack
+
     turned = [chain.turned_now() for chain in chains]
     said = [chain.information(part) for chain, part in zip(chains, turned, strict=True)]
     precision, right = said[0]
@@ -180,7 +182,7 @@ def _moved(
     # Each experiment alone has the prior of the common coefficients.
     precision[:effect_count, :effect_count] -= (len(chains) - 1.0) * np.eye(effect_count)
     lower = _cholesky(0.5 * (precision + precision.T))
-    root = np.asarray(np.linalg.inv(lower).T, dtype=np.float64)
+    root = np.asarray(lapack.dtrtri(lower, lower=True)[0].T, dtype=np.float64)
     middle = root @ (root.T @ right)
     shared = middle + root @ rng.standard_normal(middle.size)
     for chain, part, column in zip(chains, turned, columns, strict=True):
@@ -193,7 +195,9 @@ class _Turned:
     """Columns and values of an experiment in coordinates in which they are independent.
 
     `columns` (D, H, S, q), `values` (D, H, S), `ones` (H, S, S): a constant of a day; `weight` (H, S): the
-    precision; `slow_part` (H, S): variance of the slow part; `turn` (S, S), `noise` (S,): back to sensors.
+    precision; `slow_part` (H, S): variance of the slow part; `turn` (S, S), `noise` (S,): back to sensors;
+    `weighted_ones` (H * S, S), `day_covariance` (S, S): weighted constants of a day and their covariance, the
+    same on all days.
     """
 
     columns: Floats
@@ -203,6 +207,8 @@ class _Turned:
     slow_part: Floats
     turn: Floats
     noise: Floats
+    weighted_ones: Floats
+    day_covariance: Floats
 
 
 class _Chain:
@@ -230,7 +236,7 @@ class _Chain:
         self.columns = np.concatenate(columns, axis=2).reshape(*self.shape, -1)
         # Eigenvectors of the correlation within a day, and the columns in them, by correlation time.
         self.kernels = {h: drift_kernel(grid, h) for h in CORRELATION_HOURS}
-        self.spectra = {h: np.linalg.eigh(kernel) for h, kernel in self.kernels.items()}
+        self.spectra = {h: _eigenvectors(kernel) for h, kernel in self.kernels.items()}
         self.turned = {h: _along_slots(vector.T, self.columns) for h, (_, vector) in self.spectra.items()}
 
     def turned_now(self) -> _Turned:
@@ -238,7 +244,7 @@ class _Chain:
         covariances = self.covariances
         value, vector = self.spectra[covariances.correlation_hours]
         noise = np.sqrt(covariances.white)
-        strength, turn = np.linalg.eigh(covariances.drift / np.outer(noise, noise))
+        strength, turn = _eigenvectors(covariances.drift / np.outer(noise, noise))
         to_sensor = turn.T / noise  # from sensors to values of variance 1 + the product of the eigenvalues
         slow_part = np.outer(value, np.maximum(strength, 0.0))  # (H, S)
         columns = np.einsum(
@@ -246,7 +252,14 @@ class _Chain:
         )
         values = _along_slots(vector.T, self.value) @ to_sensor.T
         ones = vector.T.sum(axis=1)[:, None, None] * to_sensor[None]  # (H, S, S): a constant of a day
-        return _Turned(columns, values, ones, 1.0 / (1.0 + slow_part), slow_part, turn, noise)
+        weight = 1.0 / (1.0 + slow_part)
+        weighted_ones = (ones * weight[:, :, None]).reshape(-1, self.sensors)
+        day_covariance = np.linalg.inv(
+            np.linalg.inv(covariances.day) + ones.reshape(-1, self.sensors).T @ weighted_ones
+        )
+        return _Turned(
+            columns, values, ones, weight, slow_part, turn, noise, weighted_ones, np.asarray(day_covariance)
+        )
 
     def draw(self, turned: _Turned, shared: Floats) -> None:
         """Draw the errors given the coefficients (q,) of this experiment, then its sizes."""
@@ -275,11 +288,11 @@ class _Chain:
         )
         if covariances.alike:
             precision[end:, end:] = np.linalg.inv(covariances.alike * covariances.day)
-        flat = columns.reshape(-1, columns.shape[3])
-        heavy = (columns * weight[None, :, :, None]).reshape(flat.shape)
-        precision += flat.T @ heavy
-        right = heavy.T @ turned.values.ravel()
-        weighted_ones, day_covariance = self._constants(turned)
+        root = np.sqrt(weight)
+        scaled = (columns * root[None, :, :, None]).reshape(-1, columns.shape[3])
+        precision += scaled.T @ scaled
+        right = scaled.T @ (turned.values * root).ravel()
+        weighted_ones, day_covariance = turned.weighted_ones, turned.day_covariance
         with_columns = (
             np.swapaxes(columns.reshape(len(columns), -1, columns.shape[3]), 1, 2) @ weighted_ones
         )  # (D, q, S)
@@ -290,17 +303,9 @@ class _Chain:
         right -= lifted.T @ with_values.ravel()
         return precision, right
 
-    def _constants(self, turned: _Turned) -> tuple[Floats, Floats]:
-        """Weighted constants of a day (H * S, S), and their covariance (S, S), the same on all days."""
-        weighted_ones = (turned.ones * turned.weight[:, :, None]).reshape(-1, self.sensors)
-        day_covariance = np.linalg.inv(
-            np.linalg.inv(self.covariances.day) + turned.ones.reshape(-1, self.sensors).T @ weighted_ones
-        )
-        return weighted_ones, np.asarray(day_covariance, dtype=np.float64)
-
     def _days(self, turned: _Turned, residual: Floats) -> Floats:
         """Draw the constants of days (D, S) given what the coefficients leave."""
-        weighted_ones, day_covariance = self._constants(turned)
+        weighted_ones, day_covariance = turned.weighted_ones, turned.day_covariance
         spread = root_of(day_covariance)
         day_means = residual.reshape(len(residual), -1) @ weighted_ones @ day_covariance
         return np.asarray(day_means + self.rng.standard_normal(day_means.shape) @ spread.T)
@@ -402,6 +407,17 @@ def _cholesky(total: Floats) -> Floats:
         alike = total / np.outer(scale, scale)
         lift = len(total) * _ROUND_OFF - min(float(np.linalg.eigvalsh(alike)[0]), 0.0)
         return np.asarray(scale[:, None] * np.linalg.cholesky(alike + lift * np.eye(len(total))))
+
+
+def _eigenvectors(symmetric: Floats) -> tuple[Floats, Floats]:
+    """Eigenvalues (n,) and eigenvectors (n, n), the largest component of each positive.
+
+    Errors are drawn along them. Signs that depend on round-off would give other draws of the same
+    distribution on other machines.
+    """
+    value, vectors = np.linalg.eigh(symmetric)
+    largest = np.abs(vectors).argmax(axis=0)
+    return value, vectors * np.sign(vectors[largest, np.arange(len(value))])
 
 
 def _along_slots(matrix: Floats, values: Floats) -> Floats:

@@ -22,22 +22,20 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+from mascarin.linear_algebra import inverted
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 #: Length of a slot that is tried, the shortest first. [h]
 _SLOTS: Final = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
-#: Largest size of a block, of one that is inverted at once, and number of products of one multiplication:
-#: with more the linear algebra libraries use several threads, which wait for each other on a busy machine.
-#: With more days blocks are smaller, so that the work stays the same.
+#: Largest size of a block. With more days blocks are smaller, so that the work stays the same.
 _MAX_DAY_SIZE: Final = 144
-_AT_ONCE: Final = 60
-_MAX_PRODUCT_SIZE: Final = 200_000
 _WORK: Final = 4e7
 
 
@@ -113,15 +111,22 @@ class DayGrid:
             Number of samples. [-]
         """
         sensors = mask.shape[1]
-        count = np.zeros((self.days, self.slots, sensors), dtype=np.int64)
-        np.add.at(count, (self.day, self.slot), mask)
         wide = mask.reshape(*mask.shape, *(1,) * (values.ndim - 2))
-        total = np.zeros((self.days, self.slots, *values.shape[1:]))
-        np.add.at(total, (self.day, self.slot), np.where(wide, values, 0.0))
+        count, total = self._total(mask.astype(np.int64)), self._total(np.where(wide, values, 0.0))
         divisor = np.maximum(count, 1).reshape(*count.shape, *(1,) * (values.ndim - 2))
         size = self.slots * sensors
         mean = (total / divisor).reshape(self.days, size, *values.shape[2:])
         return mean, count.reshape(self.days, size)
+
+    def _total(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Sum samples (T, ...) over the slots, shape (D, H, ...)."""
+        number = self.day * self.slots + self.slot
+        order = np.argsort(number, kind="stable")
+        first = np.flatnonzero(np.diff(number[order], prepend=-1))
+        total = np.zeros((self.days * self.slots, *values.shape[1:]), dtype=values.dtype)
+        if first.size:
+            total[number[order[first]]] = np.add.reduceat(values[order], first, axis=0)
+        return total.reshape(self.days, self.slots, *values.shape[1:])
 
     def within(self, values: Floats, mask: Flags) -> Floats:
         """Return the mean square of the distances of samples (T, S) from the means of their slots, (S,)."""
@@ -132,13 +137,18 @@ class DayGrid:
         return np.asarray(square / np.maximum(mask.sum(axis=0), 1))
 
 
+Days = slice | NDArray[np.int64]
+
+
 @lru_cache(maxsize=16)
-def _different(present: bytes, days: int) -> tuple[Flags, NDArray[np.int64]]:
-    """Different rows of what is there (D, n), and which of them each day has; asked for in each iteration."""
+def _different(present: bytes, days: int) -> tuple[Flags, tuple[Days, ...]]:
+    """Different rows of what is there (D, n), and the days that have each; asked for in each iteration."""
     patterns, which = np.unique(
         np.frombuffer(present, dtype=np.bool_).reshape(days, -1), axis=0, return_inverse=True
     )
-    return patterns, which.reshape(-1).astype(np.int64)
+    if len(patterns) == 1:
+        return patterns, (slice(None),)
+    return patterns, tuple(np.flatnonzero(which.reshape(-1) == k) for k in range(len(patterns)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +165,8 @@ class DayGaussian:
         Values that are there; the others count as if they did not exist.
     elsewhere : ndarray, shape (q, q), optional
         Precision of the coefficients from the values of other experiments, see `Experiments`. [-]
+    changing : int, optional
+        Number of the first columns that may differ between days; all columns when absent. [-]
 
     Examples
     --------
@@ -169,37 +181,53 @@ class DayGaussian:
     columns: Floats
     present: Flags
     elsewhere: Floats | None = None
+    changing: int | None = None
 
     @cached_property
-    def _alike(self) -> tuple[Floats, Flags, NDArray[np.int64]]:
-        """Different blocks, with ones on the diagonal where nothing is there, and which of them each day has.
+    def _alike(self) -> tuple[Floats, Flags, tuple[Days, ...]]:
+        """Different blocks, with ones on the diagonal where nothing is there, and the days that have each.
 
         Most days have the same block and the same values, so that one inverse serves them all.
         """
         if self.blocks.strides[0] == 0:
-            patterns, which = _different(self.present.tobytes(), len(self.present))
+            patterns, groups = _different(self.present.tobytes(), len(self.present))
+            blocks = np.broadcast_to(self.blocks[0], (len(patterns), *self.blocks.shape[1:]))
         else:
-            patterns, which = self.present, np.arange(len(self.present))
-        first = [int(np.flatnonzero(which == k)[0]) for k in range(len(patterns))]
+            patterns, blocks = self.present, self.blocks
+            groups = tuple(slice(k, k + 1) for k in range(len(patterns)))
+        if patterns.all():
+            return blocks, patterns, groups
         both = patterns[:, :, None] & patterns[:, None, :]
-        eye = np.eye(self.blocks.shape[1])
-        blocks = np.where(both, self.blocks[first], np.where(patterns[:, :, None], 0.0, eye))
-        return blocks, both, which
+        eye = np.eye(blocks.shape[1])
+        return np.where(both, blocks, np.where(patterns[:, :, None], 0.0, eye)), patterns, groups
 
     @cached_property
-    def _inverse(self) -> Floats:
-        """Inverses of the blocks, zero where nothing is there, shape (D, n, n)."""
-        blocks, both, which = self._alike
-        inverse = inverted(blocks)
-        inverse = np.where(both, 0.5 * (inverse + np.swapaxes(inverse, 1, 2)), 0.0)
-        return np.asarray(inverse[which])
+    def _inverses(self) -> Floats:
+        """Inverses of the different blocks, zero where nothing is there, shape (k, n, n)."""
+        blocks, patterns, _ = self._alike
+        inverses = inverted(blocks)
+        return inverses if patterns.all() else inverses * (patterns[:, :, None] & patterns[:, None, :])
+
+    def _weighted(self, values: Floats, changing: int | None = None) -> Floats:
+        """Multiply values (D, n, k) with the inverses of the blocks. [1/unit^2]
+
+        `changing`: number of the first columns that differ between days; all when absent.
+        """
+        weighted, first = np.empty(values.shape), values.shape[2] if changing is None else changing
+        for inverse, days in zip(self._inverses, self._alike[2], strict=True):
+            part = values[days]
+            weighted[days, :, :first] = inverse @ part[:, :, :first]
+            if first < values.shape[2]:
+                weighted[days, :, first:] = inverse @ part[0, :, first:]
+        return weighted
 
     @cached_property
     def _added(self) -> tuple[Floats, Floats]:
         """``B^-1 U``, and ``U' B^-1 U``: what these values add to the precision of the coefficients."""
-        used = np.where(self.present[:, :, None], self.columns, 0.0)
-        weighted = product(self._inverse, used)
-        return weighted, product(np.swapaxes(used, 1, 2), weighted).sum(axis=0)
+        present = self.present[:, :, None]
+        used = self.columns if present.all() else np.where(present, self.columns, 0.0)
+        weighted = self._weighted(used, self.changing)
+        return weighted, summed(used, weighted)
 
     @cached_property
     def _shared(self) -> tuple[Floats, Floats]:
@@ -215,7 +243,7 @@ class DayGaussian:
         other = replace(self, elsewhere=elsewhere)
         # Nothing of these depends on the other experiments.
         other.__dict__.update(
-            {name: self.__dict__[name] for name in ("_alike", "_inverse", "_own") if name in self.__dict__}
+            {name: self.__dict__[name] for name in ("_alike", "_inverses", "_added") if name in self.__dict__}
         )
         return other
 
@@ -236,8 +264,9 @@ class DayGaussian:
     @cached_property
     def own_log_determinant(self) -> float:
         """Logarithm of the determinant of the blocks alone. [-]"""
-        blocks, _, which = self._alike
-        return float(np.linalg.slogdet(blocks)[1][which].sum())
+        blocks, _, groups = self._alike
+        values = np.linalg.slogdet(blocks)[1]
+        return float(sum(len(self.present[days]) * value for days, value in zip(groups, values, strict=True)))
 
     @cached_property
     def covariance(self) -> Floats:
@@ -261,18 +290,41 @@ class DayGaussian:
         """
         wide = values if values.ndim == 3 else values[:, :, None]
         weighted = self._shared[0]
-        inner = product(np.swapaxes(weighted, 1, 2), wide).sum(axis=0)
+        inner = summed(weighted, wide)
         if beside is not None:
             inner = inner + beside[:, None]
-        solution = product(self._inverse, wide) - product(weighted, (self.covariance @ inner)[None])
+        solution = self._weighted(wide) - weighted @ (self.covariance @ inner)
         return np.asarray(solution if values.ndim == 3 else solution[:, :, 0])
+
+    def quadratic(self, values: Floats, *, constant: bool = False) -> Floats:
+        """Compute ``V' Omega^-1 V`` of values (D, n, k), zero elsewhere; `constant`: those of all days."""
+        inner, weighted = summed(self._shared[0], values), self._weighted(values, 0 if constant else None)
+        return np.asarray(summed(values, weighted) - inner.T @ self.covariance @ inner)
+
+    @property
+    def inverses_of_days(self) -> Floats:
+        """Inverses of the blocks alone, zero where nothing is there, shape (D, n, n). [1/unit^2]"""
+        inverses = np.empty(self.blocks.shape)
+        for inverse, days in zip(self._inverses, self._alike[2], strict=True):
+            inverses[days] = inverse
+        return inverses
 
     @cached_property
     def inverse_blocks(self) -> Floats:
         """Blocks of the days of the inverse of the whole covariance, shape (D, n, n). [1/unit^2]"""
         weighted = self._shared[0]
-        explained = product(product(weighted, self.covariance[None]), np.swapaxes(weighted, 1, 2))
-        return np.asarray(self._inverse - explained)
+        return np.asarray(self.inverses_of_days - (weighted @ self.covariance) @ np.swapaxes(weighted, 1, 2))
+
+    @cached_property
+    def sum_of_inverse_blocks(self) -> Floats:
+        """Sum of `inverse_blocks` over the days, shape (n, n). [1/unit^2]"""
+        size = self.present.shape[1]
+        total = np.zeros((size, size))
+        for inverse, days in zip(self._inverses, self._alike[2], strict=True):
+            total += len(self.present[days]) * inverse
+        explained = self._shared[0] @ np.linalg.cholesky(self.covariance)
+        by_value = np.swapaxes(explained, 0, 1).reshape(size, -1)
+        return np.asarray(total - by_value @ by_value.T)
 
     def log_density(self, values: Floats) -> float:
         """Return the logarithm of the density of values (D, n)."""
@@ -402,59 +454,22 @@ class Experiments:
         return -0.5 * (square + logdet + count * math.log(2.0 * math.pi))
 
 
-def product(first: Floats, second: Floats) -> Floats:
-    """Multiply matrices (d, m, k) and (d or 1, k, n), a few rows at a time.
+def summed(first: Floats, second: Floats) -> Floats:
+    """Sum of the products ``A_d' B_d`` over days.
 
     Parameters
     ----------
-    first, second : ndarray
-        The matrices.
+    first, second : ndarray, shape (D, n, j) and (D, n, k)
+        The matrices A and B.
 
     Returns
     -------
-    ndarray, shape (d, m, n)
+    ndarray, shape (j, k)
 
     Examples
     --------
-    >>> product(np.ones((2, 3, 4)), np.ones((1, 4, 5))).shape
-    (2, 3, 5)
+    >>> summed(np.ones((2, 3, 1)), np.full((2, 3, 1), 2.0))
+    array([[12.]])
     """
-    days, rows, inner = first.shape
-    most = max(1, _MAX_PRODUCT_SIZE // max(inner * second.shape[2], 1))
-    together = max(n for n in range(1, rows + 1) if rows % n == 0 and n <= most) if rows else 1
-    parts = np.ascontiguousarray(first).reshape(days, -1, together, inner) @ second[:, None]
-    return np.asarray(parts.reshape(days, rows, second.shape[2]))
-
-
-def inverted(blocks: Floats) -> Floats:
-    """Invert symmetric matrices (k, n, n), in halves while they are large.
-
-    Parameters
-    ----------
-    blocks : ndarray, shape (k, n, n)
-        Positive definite.
-
-    Returns
-    -------
-    ndarray, shape (k, n, n)
-
-    Examples
-    --------
-    >>> inverted(np.diag([2.0, 4.0])[None])[0]
-    array([[0.5 , 0.  ],
-           [0.  , 0.25]])
-    """
-    size = blocks.shape[1]
-    if size <= _AT_ONCE:
-        return np.asarray(np.linalg.inv(blocks))
-    half = size // 2
-    first, beside, last = blocks[:, :half, :half], blocks[:, :half, half:], blocks[:, half:, half:]
-    inner = inverted(first)
-    across = product(inner, beside)
-    lower_block = inverted(last - product(np.swapaxes(beside, 1, 2), across))
-    inverse = np.empty_like(blocks)
-    inverse[:, half:, half:] = lower_block
-    inverse[:, :half, half:] = -product(across, lower_block)
-    inverse[:, half:, :half] = np.swapaxes(inverse[:, :half, half:], 1, 2)
-    inverse[:, :half, :half] = inner - product(inverse[:, :half, half:], np.swapaxes(across, 1, 2))
-    return inverse
+    flat = first.reshape(-1, first.shape[2])
+    return np.asarray(flat.T @ second.reshape(-1, second.shape[2]))

@@ -26,12 +26,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, Experiments, product
+from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, Experiments
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -127,10 +128,11 @@ class Discrepancy:
 
     def block(self, grid: DayGrid) -> Floats:
         """Return the covariance of one day (H * S, H * S), without the error that repeats. [unit^2]"""
-        kernel = drift_kernel(grid, self.correlation_hours)
-        everywhere = np.ones_like(kernel)
-        white = np.tile(self.white, grid.slots)
-        return np.asarray(np.kron(kernel, self.drift) + np.kron(everywhere, self.day) + np.diag(white))
+        kernel, size = drift_kernel(grid, self.correlation_hours), grid.slots * self.white.size
+        of_slots = kernel[:, None, :, None] * self.drift[None, :, None, :] + self.day[None, :, None, :]
+        block = of_slots.reshape(size, size)
+        block[np.diag_indices(size)] += np.tile(self.white, grid.slots)
+        return np.asarray(block)
 
 
 def alike_days(days: int, persistence: float) -> float:
@@ -165,9 +167,16 @@ def alike_days(days: int, persistence: float) -> float:
 
 
 def drift_kernel(grid: DayGrid, hours: float) -> Floats:
-    """Correlation between the slots of a day, shape (H, H). [-]"""
-    apart = np.abs(np.subtract.outer(np.arange(grid.slots), np.arange(grid.slots))) * grid.slot_hours
-    return np.asarray(np.exp(-apart / hours))
+    """Correlation between the slots of a day, shape (H, H), read-only. [-]"""
+    return _kernel(grid.slots, grid.slot_hours, hours)
+
+
+@lru_cache(maxsize=16)
+def _kernel(slots: int, slot_hours: float, hours: float) -> Floats:
+    apart = np.abs(np.subtract.outer(np.arange(slots), np.arange(slots))) * slot_hours
+    kernel = np.asarray(np.exp(-apart / hours))
+    kernel.flags.writeable = False  # asked for in each iteration
+    return kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,6 +211,16 @@ class DayData:
         """Number of sensors S."""
         return self.within.size
 
+    @cached_property
+    def functions(self) -> Floats:
+        """Columns of the error that repeats for each function and sensor, (D, H * S, m * S). [-]"""
+        return self.repeating(np.eye(self.sensors))
+
+    @cached_property
+    def regular(self) -> bool:
+        """Whether everything is there, and the error that repeats has the same columns on all days."""
+        return bool(self.present.all() and (self.basis == self.basis[:1]).all())
+
     def repeating(self, root: Floats) -> Floats:
         """Columns of the error that repeats, (D, H * S, m * S), from a root of its covariance (S, S)."""
         days, size, functions = self.basis.shape
@@ -217,7 +236,8 @@ class DayData:
             shared.append(np.broadcast_to(rows, (self.grid.days, *rows.shape)))
         columns = np.concatenate(shared, axis=2)
         block = covariances.block(self.grid)
-        return DayGaussian(np.broadcast_to(block, (self.grid.days, *block.shape)), columns, self.present)
+        blocks, changing = np.broadcast_to(block, (self.grid.days, *block.shape)), self.effects.shape[2]
+        return DayGaussian(blocks, columns, self.present, changing=changing if self.regular else None)
 
 
 def columns_of(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> list[Indices]:
@@ -262,7 +282,7 @@ def together(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> Exp
     for gaussian, part_columns in zip(alone, columns_by_part, strict=True):
         columns = np.zeros((*gaussian.columns.shape[:2], size))
         columns[:, :, part_columns] = gaussian.columns
-        wide.append(replace(gaussian, columns=columns))
+        wide.append(replace(gaussian, columns=columns, changing=None))
     return Experiments(wide)
 
 
@@ -400,15 +420,14 @@ def _improved(
     drift = drift_kernel(grid, covariances.correlation_hours)
     kernels = {"day": np.ones_like(drift), "drift": drift}
     prior = _PRIOR_WEIGHT * np.diag(scale**2)
-    functions = data.repeating(np.eye(sensors))
     weighted = solved.reshape(grid.days, grid.slots, sensors)
-    inverse = now.inverse_blocks.reshape(grid.days, grid.slots, sensors, grid.slots, sensors)
+    inverse = now.sum_of_inverse_blocks.reshape(grid.slots, sensors, grid.slots, sensors)
     improved: dict[str, Any] = {}
-    of_hour = (functions * weighted.reshape(grid.days, -1, 1)).sum(axis=(0, 1)).reshape(-1, sensors)
-    spread = product(np.swapaxes(functions, 1, 2), now.solve(functions)).sum(axis=0)
+    of_hour = (solved.ravel() @ data.functions.reshape(solved.size, -1)).reshape(-1, sensors)
+    spread = now.quadratic(data.functions, constant=data.regular)
     for name, kernel in kernels.items():
         square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
-        trace = np.einsum("dhsgt,hg->st", inverse, kernel, optimize=True)
+        trace = np.einsum("hsgt,hg->st", inverse, kernel)
         if name == "day" and covariances.alike:
             # The first function of the error by hour is a constant, that of the common level.
             level = covariances.alike / _SPECTRUM[0]
@@ -419,7 +438,7 @@ def _improved(
     count = of_hour.shape[0]
     trace = np.einsum("kskt->st", spread.reshape(count, sensors, count, sensors))
     improved["hour"] = _step(covariances.hour, of_hour.T @ of_hour, trace, prior, limit)
-    curvature = np.einsum("dhshs->s", inverse) + _PRIOR_WEIGHT / covariances.white
+    curvature = np.einsum("hshs->s", inverse) + _PRIOR_WEIGHT / covariances.white
     squares = np.sum(weighted**2, axis=(0, 1)) + _PRIOR_WEIGHT * scale**2 / covariances.white**2
     improved["white"] = np.minimum(covariances.white * np.sqrt(squares / curvature), limit**2)
     moved = max(

@@ -30,7 +30,7 @@ from mascarin.calibration.errors.linear_estimation import (
     objective,
 )
 from mascarin.calibration.errors.sampled_posterior import ChainLengths
-from mascarin.calibration.methods.least_squares import residuals_and_derivatives
+from mascarin.calibration.methods.least_squares import residuals_and_derivatives, residuals_at
 
 Floats = NDArray[np.float64]
 Keep = Callable[[object, Callable[[], tuple[Floats, Floats]]], tuple[Floats, Floats]]
@@ -141,9 +141,15 @@ def estimate_experiments(
         simulated = np.where(problem.mask, residuals + np.where(problem.mask, problem.measured, 0.0), 0.0)
         return Linear(z, simulated, jacobian, np.zeros((*simulated.shape, 0)))
 
+    def series(z: Floats) -> Linear:
+        measured = np.where(problem.mask, problem.measured, 0.0)
+        simulated = np.where(problem.mask, residuals_at(problem, z) + measured, 0.0)
+        none = np.zeros((*simulated.shape, 0))
+        return Linear(z, simulated, none, none)
+
     # The estimates are those of the model as it will be used, with all other numbers as described.
     linearization = _searched(
-        problem, linear, [replace(each, further=()) for each in stated], problem.positions(fit.x)
+        problem, (linear, series), [replace(each, further=()) for each in stated], problem.positions(fit.x)
     )
     if further is not None:
         # At the estimates themselves, with which all later steps run the model.
@@ -165,24 +171,27 @@ def estimate_experiments(
 
 def _searched(
     problem: CalibrationProblem,
-    linear: Callable[[Floats], Linear],
+    model: tuple[Callable[[Floats], Linear], Callable[[Floats], Linear]],
     stated: Sequence[ErrorStatement],
     first: Floats,
 ) -> Linear:
-    """Linearize about better and better estimates, until the density no longer rises."""
+    """Linearize about better and better estimates, until the density no longer rises.
+
+    `model`: linearized at positions (P,), and its series there alone.
+    """
+    linear, series = model
     linearization = linear(first)
     covariances: list[Discrepancy] | None = None
     for _ in range(_MAX_STEPS):
         goal, covariances = best_positions(problem, linearization, stated, covariances)
         before = objective(problem, linearization, stated, covariances)
         for _ in range(_MAX_HALVINGS):
-            trial = linear(goal)
-            after = objective(problem, trial, stated, covariances)
+            after = objective(problem, series(goal), stated, covariances)
             if after <= before:
                 break
             goal = 0.5 * (goal + linearization.z)
         if after <= before:
-            linearization = trial
+            linearization = linear(goal)
         if before - after < _MIN_DECREASE:
             break
     return linearization

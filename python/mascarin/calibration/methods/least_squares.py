@@ -21,6 +21,7 @@ _IDLE_STEPS: Final = 6
 _MIN_COST_DECREASE: Final = 1e-7
 #: Rows of one block of the QR decomposition.
 _BLOCK_ROWS: Final = 256
+_NO_DERIVATIVE: Final = "the model cannot be evaluated near the minimum: the uncertainty cannot be estimated"
 
 
 class _Idle(Exception):
@@ -211,7 +212,7 @@ def _hypercube(problem: CalibrationProblem, count: int, seed: int) -> Iterator[F
 
 def exact(problem: CalibrationProblem, evaluator: Evaluator, z: Floats) -> Floats:
     """Compute exact derivatives of residuals by positions z (P,), shape (T, S, P). [unit of the sensor]"""
-    return np.asarray(evaluator.slopes(problem.values(z[None])[0]) * problem.rates(z))
+    return np.ascontiguousarray(evaluator.slopes(problem.values(z[None])[0]) * problem.rates(z))
 
 
 def residuals_and_derivatives(
@@ -223,18 +224,33 @@ def residuals_and_derivatives(
     return derivative(problem, z, options.difference)
 
 
+def residuals_at(problem: CalibrationProblem, z: Floats) -> Floats:
+    """Compute residuals at positions z (P,), shape (T, S). [unit]
+
+    Raises
+    ------
+    SolverError
+        The model cannot be simulated there.
+    """
+    residuals = problem.residuals(problem.values(z[None]))[0]
+    if not np.isfinite(residuals).all():
+        raise SolverError(_NO_DERIVATIVE)
+    return np.asarray(residuals)
+
+
 def derivative(problem: CalibrationProblem, z: Floats, difference: float) -> tuple[Floats, Floats]:
     """Compute residuals (T, S) and central differences by z (T, S, P), one-sided at a bound, in one batch."""
     n = z.size
     ahead = np.minimum(z + difference, 1.0)
     behind = np.maximum(z - difference, 0.0)
-    points = np.tile(z, (2 * n + 1, 1))
+    points = np.tile(z, (2 * n, 1))
     for i in range(n):
-        points[1 + i, i] = ahead[i]
-        points[1 + n + i, i] = behind[i]
-    values = problem.residuals(problem.values(points))
+        points[i, i] = ahead[i]
+        points[n + i, i] = behind[i]
+    # The middle by itself: a search has it already.
+    middle, values = residuals_at(problem, z), problem.residuals(problem.values(points))
     if not np.isfinite(values).all():
-        msg = "the model cannot be evaluated near the minimum: the uncertainty cannot be estimated"
-        raise SolverError(msg)
-    jacobian = (values[1 : 1 + n] - values[1 + n :]) / (ahead - behind)[:, None, None]
-    return values[0], np.moveaxis(jacobian, 0, -1)
+        raise SolverError(_NO_DERIVATIVE)
+    jacobian = (values[:n] - values[n:]) / (ahead - behind)[:, None, None]
+    # As it is when it is read again: products depend in the last digits on the order in memory.
+    return middle, np.ascontiguousarray(np.moveaxis(jacobian, 0, -1))

@@ -59,28 +59,30 @@ def within_bounds(mean: Floats, covariance: Floats, low: Floats, high: Floats) -
     covariance = np.tile(covariance.reshape(-1, size, size), (repeats, 1, 1))
     precision = np.linalg.inv(covariance)
     precision = 0.5 * (precision + np.swapaxes(precision, 1, 2))
-    conditional_variance = 1.0 / np.einsum("kii->ki", precision)
-    sd = np.sqrt(conditional_variance)
+    sd = 1.0 / np.sqrt(np.einsum("kii->ki", precision))
     ridge = 1e-12 * np.einsum("kii->ki", covariance)[:, :, None] * np.eye(size)
     root = np.linalg.cholesky(covariance + ridge)
-    x = np.clip(mean + np.einsum("kij,kj->ki", root, rng.standard_normal(mean.shape)), low, high)
+    first = np.clip(mean + np.einsum("kij,kj->ki", root, rng.standard_normal(mean.shape)), low, high)
+    away, least, most = first - mean, low - mean, high - mean
+    # By variable: minus the effect of all others on its mean, in its own standard deviations.
+    effects = np.swapaxes(precision * sd[:, :, None], 0, 1) * (1.0 - np.eye(size))[:, None, :]
+    by_variable = [
+        (np.ascontiguousarray(effects[i]), *(np.ascontiguousarray(each[:, i]) for each in (sd, least, most)))
+        for i in range(size)
+    ]
     states = []
     for move in range(_BURN_IN + _SAMPLED_MOVES):
         uniform = rng.random((size, len(mean)))
-        for i in range(size):
-            away = (
-                np.einsum("kj,kj->k", x - mean, precision[:, i])
-                - (x[:, i] - mean[:, i]) / conditional_variance[:, i]
-            )
-            middle = mean[:, i] - conditional_variance[:, i] * away
-            first, last = (low[i] - middle) / sd[:, i], (high[i] - middle) / sd[:, i]
+        for i, (effect, spread, lowest, highest) in enumerate(by_variable):
+            middle = -np.einsum("kj,kj->k", effect, away)
+            first, last = lowest / spread - middle, highest / spread - middle
             # The tail in which both ends are small numbers, so that none is rounded to one.
             flip = first > 0.0
-            bottom, top = np.where(flip, -last, first), np.where(flip, -first, last)
-            lowest, highest = ndtr(bottom), ndtr(top)
-            draw = ndtri(np.clip(lowest + uniform[i] * (highest - lowest), 1e-300, 1.0 - 1e-16))
-            draw = np.clip(np.where(flip, -draw, draw), first, last)
-            x[:, i] = np.clip(middle + sd[:, i] * draw, low[i], high[i])
+            ends = ndtr(np.where(flip, (-last, -first), (first, last)))
+            part = ends[0] + uniform[i] * (ends[1] - ends[0])
+            draw = ndtri(np.minimum(np.maximum(part, 1e-300), 1.0 - 1e-16))
+            draw = np.minimum(np.maximum(np.where(flip, -draw, draw), first), last)
+            away[:, i] = np.minimum(np.maximum(spread * (middle + draw), lowest), highest)
         if move >= _BURN_IN and (move - _BURN_IN) % _THINNING == 0:
-            states.append(x.copy())
+            states.append(np.clip(mean + away, low, high))
     return np.concatenate(states)

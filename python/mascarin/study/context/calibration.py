@@ -138,6 +138,18 @@ def identify(
 
 def _batch(simulation: Simulation) -> int:
     """Number of evaluations to store at once; it has no influence on the result."""
+    size = (len(simulation.compiled.forcing), simulation.compiled.plan.n_cells)
+    if size not in _BATCHES:
+        _BATCHES[size] = _measured_batch(simulation)
+    return _BATCHES[size]
+
+
+#: Numbers of evaluations, by number of steps and of cells.
+_BATCHES: Final[dict[tuple[int, int], int]] = {}
+
+
+def _measured_batch(simulation: Simulation) -> int:
+    """Number of evaluations that take about `CHUNK_SECONDS`."""
     began = time.monotonic()
     simulation.ensemble(np.tile(simulation.vector({}), (_PACK, 1)))
     seconds = max(time.monotonic() - began, 1e-6)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from collections.abc import Callable, Sequence
@@ -14,6 +13,7 @@ from mascarin.building.outputs.output import Output
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.sensitivity.building_analysis import factors_of
+from mascarin.study.context.step_cache import kept
 from mascarin.study.diagnosis.other_laws import changed
 from mascarin.study.steps.parameter_effects import Effects
 
@@ -53,13 +53,7 @@ class SeriesStore:
 
     def array(self, key: object, make: Callable[[], Array]) -> Array:
         """The stored array of a key, or a new one, which is stored."""
-        name = f"diagnosis-{hashlib.sha256(repr(key).encode()).hexdigest()[:20]}"
-        for _, arrays in self._workspace.kept(name):
-            if "values" in arrays:
-                return arrays["values"]
-        values = make()
-        self._workspace.keep(name, 0, {"values": values})
-        return values
+        return kept(self._workspace, ("diagnosis", key), make)
 
     def value(self, key: object, make: Callable[[], Any]) -> Any:
         """The same for plain values, as JSON."""

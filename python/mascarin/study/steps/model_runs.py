@@ -155,7 +155,7 @@ class ModelRuns:
         """One form of the model, its search started at the estimates of the building as described."""
         setup, name = self._setup, self._setup.variants.variant_of(choice)
         first = None if name is None else self._plain(None)
-        plain = self._plain(name, first)
+        plain = self._plain(name, first, roughly=True)
         with reporting(self._progress, f"errors of sensors and model ({label(choice)})"):
             # The problem holds the model, and the trace all evaluations: both are there already.
             key = ("form", label(choice), plain.x.tolist(), plain.cost)
@@ -172,8 +172,13 @@ class ModelRuns:
         return replace(own[setup.inputs.experiment], together={n: own[n] for n in setup.together})
 
     def _identified(self, label: str, variant: str | None, note: str) -> tuple[ModelRun, Calibration]:
-        fit = self._plain(variant)
+        fit = self._plain(variant, self._beside(variant))
         return _of_experiment(self._setup, fit, shares_of(fit.problem)[0], variant, label, note)
+
+    def _beside(self, variant: str | None) -> Calibration | None:
+        """The calibration of the building as described, where a variant has the same parameters."""
+        beside = variant is not None and not self._setup.plan.variants[variant].alone
+        return self._fits.get(None) if beside else None
 
     def together(self) -> dict[str, tuple[ModelRun, Calibration]]:
         """The calibrated building in the other experiments, without errors of sensors and model."""
@@ -188,18 +193,21 @@ class ModelRuns:
         """The calibration of the building as described, without errors of sensors and model."""
         return self._plain(None)
 
-    def _plain(self, variant: str | None, first: Calibration | None = None) -> Calibration:
-        """A calibration, its search started at the estimates of another one if there is one."""
+    def _plain(
+        self, variant: str | None, first: Calibration | None = None, *, roughly: bool = False
+    ) -> Calibration:
+        """A calibration, its search started at the estimates of another one if there is one.
+
+        `roughly`: one search with the tolerance of a form, whose estimates are made better with its errors.
+        """
         if variant in self._fits:
             return self._fits[variant]
         setup, label = self._setup, "as described" if variant is None else variant
         stated, plan, tolerance = setup.problem(variant), setup.inputs.calibration_plan, None
         if first is not None:
-            stated, plan, tolerance = (
-                _starting(stated, first),
-                plan.model_copy(update={"starts": 1}),
-                _TOLERANCE,
-            )
+            stated = _starting(stated, first)
+            if roughly:
+                plan, tolerance = plan.model_copy(update={"starts": 1}), _TOLERANCE
         simulation = setup.models.for_calibration(variant)
         with reporting(self._progress, f"calibration ({label})") as report:
             record = self._workspace.path(f"evaluations-{_safe(label)}.jsonl")
