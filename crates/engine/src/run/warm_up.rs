@@ -119,10 +119,8 @@ pub(super) fn warm_up<'a, S: Real>(
             observe(stepper, &next, action)?;
         }
         let advanced = soil_start.advance(state, &next);
-        let mut change = next.distance(state);
-        if let Some((_, left)) = advanced.as_ref().filter(|_| cycle <= SETTLING) {
-            change = change.max(*left);
-        }
+        let left = advanced.as_ref().filter(|_| cycle <= SETTLING).map_or_else(S::zero, |(_, left)| *left);
+        let change = next.distance(state).max(left);
         let reached = progress.note(&next, change, cycle, stepper.failed());
         if S::LANES > 1 {
             remember(&mut history, reached, stepper.history());
