@@ -238,6 +238,47 @@ def test_the_start_of_weather_that_does_not_change(layers: str, heated: bool, de
     assert int(repetitions[1]) < 15
 
 
+MATERIALS: dict[str, tuple[float, float, float]] = {
+    "concrete": (2.0, 2300, 900),
+    "insulation": (0.035, 30, 1400),
+    "screed": (1.4, 2000, 1000),
+    "stone": (3.0, 2700, 850),
+    "wood": (0.13, 500, 1600),
+}
+"""Conductivity [W/(m K)], density [kg/m3], specific heat [J/(kg K)]."""
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_any_floor_on_soil_begins_as_it_goes_on(seed: int) -> None:
+    """Layers of any order and thickness: repeated days converge, and the first day ends as it began."""
+    rng = np.random.default_rng(seed)
+    description = tree(before={"mean": 6.0}, conductivity=rng.choice([0.5, 1.5, 3.5]))
+    description["materials"] = {
+        name: dict(zip(("conductivity", "density", "specific_heat"), numbers, strict=True))
+        for name, numbers in MATERIALS.items()
+    }
+    description["constructions"]["floor"]["layers"] = [
+        {
+            "name": f"layer_{k}",
+            "material": str(rng.choice(list(MATERIALS))),
+            "thickness": 10 ** rng.uniform(-2, -0.2),
+        }
+        for k in range(rng.integers(1, 6))
+    ]
+    room = description["zones"]["room"]
+    room["infiltration"] = rng.choice([0.5, 3.0])
+    if rng.random() < 0.5:
+        room["heating"] = {"setpoint": 20.0}
+    swing = 6.0 + 5.0 * np.sin(2.0 * np.pi * np.arange(72) / 24.0)
+    outputs = ["room.air_temperature", "floor.inside_temperature"]
+    run = mc.simulate(Building.from_dict(description), climate(swing), step="1h", outputs=outputs)
+    repetitions = re.search(r"repeated (\d+) times", run.provenance.start)
+    assert repetitions is not None
+    assert int(repetitions[1]) <= 60
+    values = run.to_dataframe().to_numpy()
+    assert np.abs(values[24] - values[0]).max() < 0.02
+
+
 def test_the_outdoor_year() -> None:
     """Amplitude and delay of the heat by a yearly swing outdoors are those of the finite volumes."""
     from scipy.sparse import diags
