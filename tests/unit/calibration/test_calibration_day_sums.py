@@ -90,7 +90,7 @@ def test_draws_of_sizes_do_not_hang_on_round_off() -> None:
     """Sizes that differ in their last digits give the same draws to nine digits, on any machine."""
     rng, days, slots, sensors = np.random.default_rng(9), 5, 12, 3
     grid = DayGrid(np.zeros(0, np.int64), np.zeros(0, np.int64), days, slots, 2.0)
-    hours = np.arange(slots) * 2.0
+    hours = np.arange(slots, dtype=np.float64) * 2.0
     basis = np.repeat(np.repeat(hour_basis(hours), sensors, axis=0)[None], days, axis=0)
     error = rng.normal(size=(days, slots * sensors)) * 0.2 + rng.normal(size=(days, 1)) * 0.3
     effects = rng.normal(size=(days, slots * sensors, 2))
