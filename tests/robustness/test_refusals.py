@@ -151,7 +151,7 @@ def test_a_run_under_a_limit_of_memory_is_refused_and_does_not_abort(folder: Pat
         env={**os.environ, "RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
     )  # fmt: skip
     assert ended.returncode == 2, ended.stderr
-    assert "would take 15.8 GB of memory" in ended.stderr
+    assert "would take 3.78 GB of memory" in ended.stderr
 
 
 THICK = "      - {name: l%d, material: concrete, thickness: 0.02, nodes: 1000}\n"
