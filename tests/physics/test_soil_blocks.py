@@ -205,6 +205,18 @@ FLOORS: dict[str, list[tuple[str, float]]] = {
 """Layers of floors from the soil to the room, with their thickness [m]."""
 
 
+FREE_ERRORS = {
+    "concrete": 0.003,
+    "insulation below": 0.04,
+    "insulation above": 0.005,
+    "screed": 0.02,
+    "foundation": 0.001,
+}
+"""Largest error of the air of a free room [K]: it follows its floor in days, and a repeated day changes it by less
+than 0.01 K before it has come to the end.
+"""
+
+
 @pytest.mark.parametrize("layers", list(FLOORS))
 @pytest.mark.parametrize(("heated", "deep"), [(False, 10.0), (True, 10.0), (True, None)])
 def test_the_start_of_weather_that_does_not_change(layers: str, heated: bool, deep: float | None) -> None:
@@ -230,8 +242,7 @@ def test_the_start_of_weather_that_does_not_change(layers: str, heated: bool, de
     result = mc.simulate(house, weather, step="1h", outputs=[output])
     steady = mc.steady(house, weather, outputs=[output], step="1h")[output]
     values = result.to_dataframe()[output].to_numpy()
-    # A free room follows its floor in days: what changes by 0.01 K a day may be farther from its end.
-    assert np.abs(values - steady).max() < (1.0 if heated else 0.05)
+    assert np.abs(values - steady).max() < (0.5 if heated else FREE_ERRORS[layers])
     assert steady > (550.0 if heated else 4.3)
     repetitions = re.search(r"repeated (\d+) times", result.provenance.start)
     assert repetitions is not None

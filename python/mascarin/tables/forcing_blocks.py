@@ -62,21 +62,21 @@ class ForcingBlocks:
         self._air_temperature = air_temperature
         self._blocks = blocks
         self._ends = dict(ends or {})
-        self._whole: Array | None = None
+        self._all_steps: Array | None = None
         self._times = 0
 
     @classmethod
     def of(cls, forcing: Array) -> ForcingBlocks:
         """From all steps, shape (steps, stages, channels). [unit of each channel]"""
         blocks = cls((forcing.shape[0], forcing.shape[1], forcing.shape[2]), lambda: iter([forcing]))
-        blocks._whole = forcing
+        blocks._all_steps = forcing
         return blocks
 
     def __len__(self) -> int:
         return self.shape[0]
 
     def __reduce__(self) -> tuple[Callable[[Array], ForcingBlocks], tuple[Array]]:
-        return ForcingBlocks.of, (self.whole,)
+        return ForcingBlocks.of, (self.all_steps,)
 
     @property
     def nbytes(self) -> int:
@@ -84,7 +84,7 @@ class ForcingBlocks:
         return 8 * self.shape[0] * self.shape[1] * self.shape[2]
 
     @property
-    def whole(self) -> Array:
+    def all_steps(self) -> Array:
         """All steps, shape (steps, stages, channels); they stay in memory. [unit of each channel]
 
         Raises
@@ -92,15 +92,15 @@ class ForcingBlocks:
         InputError
             They take more memory than there is.
         """
-        if self._whole is None:
+        if self._all_steps is None:
             advice = "take a longer step or a shorter period"
             memory.require(float(self.nbytes), f"the weather of {len(self)} steps", advice)
             out, done = np.empty(self.shape), 0
             for block in self._blocks():
                 out[done : done + len(block)] = block
                 done += len(block)
-            self._whole = out
-        return self._whole
+            self._all_steps = out
+        return self._all_steps
 
     def blocks(self, *, keeps_steps: bool = False) -> Iterator[Array]:
         """The blocks of steps; one where all steps are in memory. [unit of each channel]
@@ -112,9 +112,9 @@ class ForcingBlocks:
         """
         if keeps_steps:
             self._times += 1
-        if self._whole is None and self._times < _AGAIN:
+        if self._all_steps is None and self._times < _AGAIN:
             return self._blocks()
-        return iter([self.whole])
+        return iter([self.all_steps])
 
     @property
     def opening(self) -> Array:
@@ -126,10 +126,10 @@ class ForcingBlocks:
     def air_temperature(self) -> float:
         """Mean of the outdoor air at the last stages of all steps. [degC]"""
         if self._air_temperature is None:
-            return float(self.whole[:, -1, _AIR].mean())
+            return float(self.all_steps[:, -1, _AIR].mean())
         return self._air_temperature
 
     def ends(self, channel: int) -> Array:
         """A channel at the last stages of all steps, shape (steps,). [its unit]"""
         series = self._ends.get(channel)
-        return self.whole[:, -1, channel] if series is None else series
+        return self.all_steps[:, -1, channel] if series is None else series

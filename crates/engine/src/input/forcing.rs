@@ -135,7 +135,7 @@ pub struct ForcingBlocks<'a> {
 impl<'a> ForcingBlocks<'a> {
     /// All steps in one block.
     #[must_use]
-    pub fn one(forcing: Forcing<'a>) -> Self {
+    pub fn single(forcing: Forcing<'a>) -> Self {
         Self::new(forcing, forcing.steps(), || Ok(Vec::new()))
     }
 
@@ -170,9 +170,9 @@ impl<'a> ForcingBlocks<'a> {
         let values = (self.next)()?;
         let steps = Forcing::new(&values, stages, channels)?.steps();
         if steps == 0 || steps > self.steps - done {
-            let left = self.steps - done;
+            let remaining = self.steps - done;
             return Err(EngineError::Input(format!(
-                "a block of the forcing has {steps} steps, expected 1 to {left}"
+                "a block of the forcing has {steps} steps, expected 1 to {remaining}"
             )));
         }
         Ok(values)

@@ -112,7 +112,7 @@ fn means_weigh_by_length() {
     mascarin_engine::run::simulate_in_blocks(
         &plan,
         &numbers,
-        &mut mascarin_engine::forcing::ForcingBlocks::one(drive),
+        &mut mascarin_engine::forcing::ForcingBlocks::single(drive),
         &given,
         &RunControl::default(),
         7,

@@ -35,7 +35,7 @@ fn blocks_are_the_records_of_a_run() {
             let streamed = simulate_in_blocks(
                 &plan,
                 &numbers,
-                &mut ForcingBlocks::one(drive),
+                &mut ForcingBlocks::single(drive),
                 &options,
                 &watch,
                 rows,
@@ -127,7 +127,7 @@ fn a_refused_block_ends_the_run() {
     let drive = Forcing::new(&weather, stages, plan.n_channels()).unwrap();
     let (watch, mut taken) = (RunControl::default(), 0);
     let ended =
-        simulate_in_blocks(&plan, &numbers, &mut ForcingBlocks::one(drive), &options, &watch, 10, |_| {
+        simulate_in_blocks(&plan, &numbers, &mut ForcingBlocks::single(drive), &options, &watch, 10, |_| {
             taken += 1;
             if taken < 3 { Ok(()) } else { Err(EngineError::Interrupted) }
         });

@@ -99,7 +99,7 @@ class CompiledRun:
     @property
     def forcing(self) -> Array:
         """The forcing of all steps, shape (steps, stages, channels); it stays in memory."""
-        return self.forcing_blocks.whole
+        return self.forcing_blocks.all_steps
 
     @cached_property
     def edges(self) -> Array:
