@@ -212,8 +212,9 @@ FREE_ERRORS = {
     "screed": 0.02,
     "foundation": 0.001,
 }
-"""Largest error of the air of a free room [K]: it follows its floor in days, and a repeated day changes it by less
-than 0.01 K before it has come to the end.
+"""Largest error of the air of a free room [K].
+
+It follows its floor in days, and a repeated day changes it by less than 0.01 K before it has come to the end.
 """
 
 
