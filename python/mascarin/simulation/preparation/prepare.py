@@ -396,8 +396,8 @@ def chosen_forcing_of(
     )
     nominal = description.values  # noqa: PD011 (no pandas object)
     sequence = step_sequence.chosen_sequence(
-        auto, times.step, (plan_of(description.json), nominal), [level.all_steps for level in forcings], settings,
-        (times.first, times.zone), controlled=bool(building.controls),
+        auto, times.step, (plan_of(description.json), nominal), [level.all_steps for level in forcings],
+        settings, (times.first, times.zone), controlled=bool(building.controls),
     )  # fmt: skip
     return *forcing_in(times=times, halvings=sequence.halvings), sequence
 
